@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a bake hands back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .scene import Floats, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class BakedMesh:
+    """The baked values of one mesh, for each corner of its output triangles.
+
+    With `output='ORIGINAL'` the triangles are the input's own, in the same order. With `'REFINED'` they are the
+    conforming subdivision: `vertices[:v]` are the input's vertices, and every output triangle lies in one input triangle.
+
+    Attributes
+    ----------
+    mesh : int
+        Index into `Scene.meshes`.
+    vertices : (w, 3) float, scene units
+    triangles : (s, 3) int
+    parent_triangle : (s,) int
+        The input triangle that each output triangle lies in (material, polygon).
+    barycentric : (s, 3, 3) float
+        Barycentric coordinates of each output corner in its parent triangle: whatever was stored for the input's
+        corners can be carried over by these weights.
+    corner_normals : (s, 3, 3) float, unit
+        Shading normal of each output corner, interpolated from the input's.
+    radiosity, irradiance : (s, 3, 3) float, W m^-2 sr^-1
+        Outgoing radiance L and irradiance over pi, linear RGB, of the front side.
+    radiosity_back, irradiance_back : (s, 3, 3) float or None
+        The same for the back side, where light reaches it; None where it is unlit or the inside of a solid.
+    """
+
+    mesh: int
+    vertices: Floats
+    triangles: Ints
+    parent_triangle: Ints
+    barycentric: Floats
+    corner_normals: Floats
+    radiosity: Floats
+    irradiance: Floats
+    radiosity_back: Floats | None = None
+    irradiance_back: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class BakeResult:
+    """All baked meshes and the report.
+
+    `report` holds only what JSON can: `patches`, `vertices`, `triangles`, `rays` (total), `rays_by_kind`, `seconds`
+    (by stage, with `total`), `iterations`, `residual`, `converged`, `estimated_error` (relative RMS),
+    `form_factor_standard_error`, `energy` (`emitted`, `reflected`, `absorbed`, `escaped` in W, and `imbalance`),
+    `minimum_size`, `rounds` (a list, one entry a refinement round), `ended` (why refinement ended), `settings` and
+    `warnings` (a list of sentences).
+    """
+
+    meshes: tuple[BakedMesh, ...]
+    report: dict[str, Any]

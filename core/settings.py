@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of a bake; the defaults live here and nowhere else."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from .errors import SettingsError
+
+METHODS = ("ADAPTIVE", "UNIFORM")
+QUALITIES = ("DRAFT", "GOOD", "HIGH")
+OUTPUTS = ("REFINED", "ORIGINAL")
+
+
+@dataclass(frozen=True)
+class BakeSettings:
+    """What a user may ask of a bake.
+
+    Attributes
+    ----------
+    threshold : float
+        A fragment is split while it receives more than this share of the energy that leaves some other fragment
+        (Kulyasov & Nikulin 2010, step 4); 0 < threshold <= 1.
+    minimum_size : float
+        Length n in scene units that the edges of fragments never fall below by splitting: only fragments of size
+        m = 2n or more are split. 0 chooses it from the scene's size and the quality.
+    method : str
+        `'ADAPTIVE'` splits by form factors; `'UNIFORM'` splits everything down to the minimum size.
+    quality : str
+        `'DRAFT'`, `'GOOD'` or `'HIGH'`: rays for each fragment and vertex, and the automatic minimum size.
+    output : str
+        `'REFINED'` returns the subdivided meshes; `'ORIGINAL'` values at the corners of the input triangles.
+    seed : int
+        Seed of the sampling patterns; the same seed gives the same bytes.
+    threads : int
+        Threads that trace rays; 0 takes every core. The result does not depend on it.
+    memory_limit : int
+        Bytes that the traced rays and working arrays may take, in MiB.
+    """
+
+    threshold: float = 0.02
+    minimum_size: float = 0.0
+    method: str = "ADAPTIVE"
+    quality: str = "GOOD"
+    output: str = "REFINED"
+    seed: int = 0
+    threads: int = 0
+    memory_limit: int = 2048
+
+    def __post_init__(self) -> None:
+        if not (0.0 < self.threshold <= 1.0):
+            raise SettingsError(f"Threshold is {self.threshold:g}; choose a value above 0 and up to 1")
+        if not (math.isfinite(self.minimum_size) and self.minimum_size >= 0.0):
+            raise SettingsError(
+                f"Minimum size is {self.minimum_size:g}; choose a positive length, or 0 to have it chosen"
+            )
+        for name, value, allowed in (
+            ("Method", self.method, METHODS),
+            ("Quality", self.quality, QUALITIES),
+            ("Output", self.output, OUTPUTS),
+        ):
+            if value not in allowed:
+                raise SettingsError(f"{name} is {value!r}; choose one of {', '.join(allowed)}")
+        if self.seed < 0:
+            raise SettingsError(f"Seed is {self.seed}; choose 0 or more")
+        if self.threads < 0:
+            raise SettingsError(f"Threads is {self.threads}; choose 0 for all cores, or more")
+        if self.memory_limit < 64:
+            raise SettingsError(f"Memory limit is {self.memory_limit} MiB; choose 64 MiB or more")
