@@ -1,0 +1,224 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The example rooms as plain numbers: no Blender, no numpy, so that tests, benchmarks and the demo share them.
+
+Every room is a list of `Surface`: world coordinates in metres, z up, front of the room towards -y (what Blender's
+front view sees). Faces are wound counterclockwise seen from the side that the light is on: walls face into the room,
+blocks and cubes outwards. `CAMERAS` says where the pictures are taken from.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+Colour = tuple[float, float, float]
+Point = tuple[float, float, float]
+Face = tuple[int, ...]
+
+BLACK: Colour = (0.0, 0.0, 0.0)
+
+# The measured spectra of the Cornell box as linear RGB, as the Mitsuba 3 renderer ships them in its own Cornell box.
+CORNELL_WHITE: Colour = (0.885809, 0.698859, 0.666422)
+CORNELL_GREEN: Colour = (0.105421, 0.37798, 0.076425)
+CORNELL_RED: Colour = (0.570068, 0.0430135, 0.0443706)
+CORNELL_RADIANCE: Colour = (18.387, 13.9873, 6.75357)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One object of a room: what an artist would name, model and give one material.
+
+    Attributes
+    ----------
+    name, material : str
+    vertices : tuple of points, m
+    faces : tuple of tuples of vertex indices
+    reflectance : diffuse albedo, linear RGB, 0..1
+    emission : emitted radiance, linear RGB, W m^-2 sr^-1
+    """
+
+    name: str
+    material: str
+    vertices: tuple[Point, ...]
+    faces: tuple[Face, ...]
+    reflectance: Colour
+    emission: Colour = BLACK
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a picture is taken from: positions in m, lens and sensor width in mm; the picture is square."""
+
+    location: Point
+    target: Point
+    lens: float
+    sensor_width: float
+
+
+# ---------------------------------------------------------------------------------------------- the Cornell box
+
+
+def _from_cornell(x: float, y: float, z: float) -> Point:
+    """Turn published millimetres (x to the left, y up, z into the box) into metres, z up; a rotation, no mirror."""
+    return (-x / 1000.0, z / 1000.0, y / 1000.0)
+
+
+def _cornell_surface(name: str, material: str, quads: str, reflectance: Colour, emission: Colour = BLACK) -> Surface:
+    """Read quads as they are published, one corner "x y z" a line; equal corners become one vertex."""
+    corners = [_from_cornell(*map(float, line.split())) for line in quads.strip().splitlines()]
+    index_of: dict[Point, int] = {}
+    corner_indices = [index_of.setdefault(corner, len(index_of)) for corner in corners]
+    faces = tuple(tuple(corner_indices[i : i + 4]) for i in range(0, len(corner_indices), 4))
+    return Surface(name, material, tuple(index_of), faces, reflectance, emission)
+
+
+def cornell_box() -> list[Surface]:
+    """Return the Cornell box with its measured coordinates.
+
+    The numbers are those that the Cornell University Program of Computer Graphics publishes as "Cornell Box Data". The
+    walls are as slightly askew as the real ones, and the blocks have no bottom. The lamp is published in the plane of
+    the ceiling, at 548.8 mm; it hangs 0.1 mm below here, so that it and the ceiling do not coincide.
+    """
+    return [
+        _cornell_surface("Floor", "White", "552.8 0 0 \n 0 0 0 \n 0 0 559.2 \n 549.6 0 559.2", CORNELL_WHITE),
+        _cornell_surface(
+            "Ceiling", "White", "556 548.8 0 \n 556 548.8 559.2 \n 0 548.8 559.2 \n 0 548.8 0", CORNELL_WHITE
+        ),
+        _cornell_surface(
+            "Back Wall", "White", "549.6 0 559.2 \n 0 0 559.2 \n 0 548.8 559.2 \n 556 548.8 559.2", CORNELL_WHITE
+        ),
+        _cornell_surface("Right Wall", "Green", "0 0 559.2 \n 0 0 0 \n 0 548.8 0 \n 0 548.8 559.2", CORNELL_GREEN),
+        _cornell_surface(
+            "Left Wall", "Red", "552.8 0 0 \n 549.6 0 559.2 \n 556 548.8 559.2 \n 556 548.8 0", CORNELL_RED
+        ),
+        _cornell_surface(
+            "Short Block",
+            "White",
+            """130 165 65
+            82 165 225
+            240 165 272
+            290 165 114
+            290 0 114
+            290 165 114
+            240 165 272
+            240 0 272
+            130 0 65
+            130 165 65
+            290 165 114
+            290 0 114
+            82 0 225
+            82 165 225
+            130 165 65
+            130 0 65
+            240 0 272
+            240 165 272
+            82 165 225
+            82 0 225""",
+            CORNELL_WHITE,
+        ),
+        _cornell_surface(
+            "Tall Block",
+            "White",
+            """423 330 247
+            265 330 296
+            314 330 456
+            472 330 406
+            423 0 247
+            423 330 247
+            472 330 406
+            472 0 406
+            472 0 406
+            472 330 406
+            314 330 456
+            314 0 456
+            314 0 456
+            314 330 456
+            265 330 296
+            265 0 296
+            265 0 296
+            265 330 296
+            423 330 247
+            423 0 247""",
+            CORNELL_WHITE,
+        ),
+        _cornell_surface(
+            "Lamp",
+            "Lamp",
+            "343 548.7 227 \n 343 548.7 332 \n 213 548.7 332 \n 213 548.7 227",
+            CORNELL_WHITE,
+            CORNELL_RADIANCE,
+        ),
+    ]
+
+
+# ---------------------------------------------------------------------------------------------- the paper's scene 1
+
+PAPER_WHITE: Colour = (0.75, 0.75, 0.75)
+PAPER_WARM: Colour = (0.7, 0.42, 0.22)
+PAPER_COOL: Colour = (0.2, 0.4, 0.65)
+
+CUBE_FACES: tuple[Face, ...] = (
+    (0, 3, 2, 1),  # bottom
+    (4, 5, 6, 7),  # top
+    (0, 1, 5, 4),
+    (1, 2, 6, 5),
+    (2, 3, 7, 6),
+    (3, 0, 4, 7),
+)
+
+
+def cube(
+    name: str,
+    material: str,
+    base: Point,
+    edge: float,
+    degrees: float,
+    reflectance: Colour,
+    emission: Colour = BLACK,
+) -> Surface:
+    """Return a cube that stands with the centre of its bottom on `base`, turned about the vertical."""
+    x, y, z = base
+    radius = edge * math.sqrt(0.5)
+    angles = [math.radians(degrees + 225.0 + 90.0 * k) for k in range(4)]
+    ring = [(x + radius * math.cos(angle), y + radius * math.sin(angle)) for angle in angles]
+    vertices = tuple((px, py, height) for height in (z, z + edge) for px, py in ring)
+    return Surface(name, material, vertices, CUBE_FACES, reflectance, emission)
+
+
+def paper_scene_1() -> list[Surface]:
+    """Return scene 1 of Kulyasov & Nikulin (2010): five cubes and one cube-shaped lamp.
+
+    The paper gives the objects but no coordinates. Here the cubes stand in a room of 4 x 4 x 3 m, open to the front,
+    and the lamp hangs in its middle; one cube stands on another.
+    """
+    left, right, back, top = -2.0, 2.0, 4.0, 3.0
+    floor = ((left, 0.0, 0.0), (right, 0.0, 0.0), (right, back, 0.0), (left, back, 0.0))
+    upper = tuple((x, y, top) for x, y, _ in floor)
+
+    def wall(name: str, corners: tuple[Point, ...], material: str, reflectance: Colour) -> Surface:
+        return Surface(name, material, corners, ((0, 1, 2, 3),), reflectance)
+
+    return [
+        wall("Floor", floor, "Plaster", PAPER_WHITE),
+        wall("Ceiling", (upper[0], upper[3], upper[2], upper[1]), "Plaster", PAPER_WHITE),
+        wall("Back Wall", (floor[3], floor[2], upper[2], upper[3]), "Plaster", PAPER_WHITE),
+        wall("Left Wall", (floor[0], floor[3], upper[3], upper[0]), "Warm Paint", PAPER_WARM),
+        wall("Right Wall", (floor[2], floor[1], upper[1], upper[2]), "Cool Paint", PAPER_COOL),
+        cube("Cube 1", "Chalk", (-1.0, 2.9, 0.0), 1.1, 18.0, PAPER_WHITE),
+        cube("Cube 2", "Chalk", (-1.0, 2.9, 1.1), 0.6, 48.0, PAPER_WHITE),
+        cube("Cube 3", "Chalk", (1.0, 2.6, 0.0), 0.9, -24.0, PAPER_WHITE),
+        cube("Cube 4", "Warm Paint", (-0.7, 1.3, 0.0), 0.5, 30.0, PAPER_WARM),
+        cube("Cube 5", "Cool Paint", (0.6, 1.2, 0.0), 0.6, -12.0, PAPER_COOL),
+        cube("Lamp", "Lamp", (0.0, 1.9, 2.2), 0.3, 0.0, BLACK, (16.0, 14.0, 11.0)),
+    ]
+
+
+ROOMS: dict[str, Callable[[], list[Surface]]] = {"cornell_box": cornell_box, "paper_scene_1": paper_scene_1}
+
+CAMERAS: dict[str, Camera] = {
+    # Published: at (278, 273, -800) mm, looking along z, focal length 35 mm, film 25 mm.
+    "cornell_box": Camera(_from_cornell(278, 273, -800), _from_cornell(278, 273, 0), 35.0, 25.0),
+    "paper_scene_1": Camera((0.0, -5.2, 1.6), (0.0, 2.0, 1.4), 42.0, 36.0),
+}
