@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes whose answer is known exactly: each function returns the scene and what a right program finds in it.
 
-Every polygon is wound so that its front faces the space that is lit. Form factors are those of whole meshes, F[i, j] from
-mesh i to mesh j; sums over triangles of a mesh are weighted by the area of the sending triangle.
+Every polygon is wound so that its front faces the space that is lit. Form factors are those of whole meshes, F[i, j]
+from mesh i to mesh j; sums over triangles of a mesh are weighted by the area of the sending triangle.
 """
 
 from __future__ import annotations
@@ -94,7 +94,8 @@ def perpendicular_factor(edge: float, depth: float, height: float) -> float:
 def rectangle_seen_from_below(points: ArrayLike, corner: ArrayLike, width: float, height: float) -> Floats:
     """Return the form factor from horizontal points facing up to a horizontal rectangle above them.
 
-    The sum of four corner formulas phi = 1/(2 pi) [X/sqrt(1+X^2) atan(Y/sqrt(1+X^2)) + Y/sqrt(1+Y^2) atan(X/sqrt(1+Y^2))].
+    The sum of four corner formulas
+    phi = 1/(2 pi) [X/sqrt(1+X^2) atan(Y/sqrt(1+X^2)) + Y/sqrt(1+Y^2) atan(X/sqrt(1+Y^2))].
 
     Parameters
     ----------
@@ -205,17 +206,13 @@ def icosphere(levels: int, radius: float = 1.0) -> tuple[Floats, NDArray[np.int6
     triangles : (20 * 4^levels, 3) int
     """
     g = 0.5 * (1.0 + math.sqrt(5.0))
-    vertices = np.array(
-        [(-1, g, 0), (1, g, 0), (-1, -g, 0), (1, -g, 0), (0, -1, g), (0, 1, g)]
-        + [(0, -1, -g), (0, 1, -g), (g, 0, -1), (g, 0, 1), (-g, 0, -1), (-g, 0, 1)],
-        dtype=np.float64,
-    )
-    triangles = np.array(
-        [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6)]
-        + [(7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10)]
-        + [(8, 6, 7), (9, 8, 1)],
-        dtype=np.int64,
-    )
+    short, long = np.tile([-1.0, 1.0], 6), np.repeat([g, -g, g, -g, g, -g], 2)
+    vertices = np.zeros((12, 3))
+    for k, (i, j) in enumerate(((0, 1), (1, 2), (2, 0))):
+        vertices[4 * k : 4 * k + 4, i], vertices[4 * k : 4 * k + 4, j] = (a[4 * k : 4 * k + 4] for a in (short, long))
+    corners = "0 11 5 0 5 1 0 1 7 0 7 10 0 10 11 1 5 9 5 11 4 11 10 2 10 7 6 7 1 8 "
+    corners += "3 9 4 3 4 2 3 2 6 3 6 8 3 8 9 4 9 5 2 4 11 6 2 10 8 6 7 9 8 1"
+    triangles = np.array(corners.split(), dtype=np.int64).reshape(-1, 3)
     for _ in range(levels):
         edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         unique, index = np.unique(edges, axis=0, return_inverse=True)
@@ -230,9 +227,10 @@ def icosphere(levels: int, radius: float = 1.0) -> tuple[Floats, NDArray[np.int6
 def sphere_interior(levels: int = 2, radius: float = 1.0) -> Case:
     """The inside of a sphere: F_ij = A_j / (4 pi R^2) for every pair of patches of the true sphere.
 
-    Flat triangles come close where they are far apart: measured with the oracle, the exact factor of two triangles whose
-    centres are more than R apart stays within `far_tolerance` of their area's share (7.3% at levels 1, 4.9% at levels 2);
-    neighbours differ by up to half. For single pairs take `oracle.form_factor`; rows of flat triangles sum to 1 exactly.
+    Flat triangles come close where they are far apart: measured with the oracle, the exact factor of two triangles
+    whose centres are more than R apart stays within `far_tolerance` of their area's share (7.3% at levels 1, 4.9% at
+    levels 2); neighbours differ by up to half. For single pairs take `oracle.form_factor`; rows of flat triangles sum
+    to 1 exactly.
     """
     vertices, triangles = icosphere(levels, radius)
     mesh = surface_mesh("sphere", vertices, triangles[:, ::-1], emission=rgb(1.0))

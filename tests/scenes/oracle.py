@@ -13,6 +13,8 @@ the outer one by tanh-sinh quadrature, which does not mind the logarithms where 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -127,7 +129,7 @@ def contour_integral(polygon_1: Floats, polygon_2: Floats) -> float:
         if length == 0.0:
             continue
         breaks = _breaks(start, end, polygon_2)
-        for s, t in zip(breaks[:-1], breaks[1:], strict=True):
+        for s, t in pairwise(breaks):
             p, q = start + s * (end - start), start + t * (end - start)
             nodes = np.where(x[:, None] < 0.5, p + x[:, None] * (q - p), q - one_minus_x[:, None] * (q - p))
             weights = weight * (t - s)
@@ -231,7 +233,8 @@ def _triangle_points(triangle: Floats, n: int) -> Floats:
 def blocked_form_factor(triangle_1: ArrayLike, triangle_2: ArrayLike, blockers: ArrayLike, n: int = 24) -> float:
     """Return the form factor of two separated triangles with triangles between them, by the midpoint rule.
 
-    The error falls as 1/n (shadow edges); the same rule without blockers tells how large it is. Not for pairs that touch.
+    The error falls as 1/n (shadow edges); the same rule without blockers tells how large it is. Not for pairs that
+    touch.
 
     Parameters
     ----------
