@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from tools.rooms import CAMERAS, ROOMS, cornell_box, paper_scene_1
 
 
