@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Build the extension's zips, one a platform, by the builder that Blender itself has, and validate them by it.
 
-The builder is a plain Python script inside the bpy wheel, so this runs without a Blender binary, in a Python that has bpy:
+The builder is a plain Python script inside the bpy wheel: this needs no Blender binary, but a Python that has bpy.
 
     .venv/main/bin/python -m tools.build [--output dist]
 """
