@@ -20,11 +20,6 @@ def load_package() -> ModuleType:
     """
     if NAME not in sys.modules:
         path = ROOT / "__init__.py"
-        if not path.exists():  # TEMPORARY until it is written
-            package = ModuleType(NAME)
-            package.__path__ = [str(ROOT)]
-            sys.modules[NAME] = package
-            return load_package()
         spec = importlib.util.spec_from_file_location(NAME, path, submodule_search_locations=[str(ROOT)])
         if spec is None or spec.loader is None:
             raise ImportError(f"{NAME} cannot be loaded from {path.name}")
