@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-import types
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -16,11 +15,6 @@ PACKAGE = "radiosity_bake"
 def load_package() -> None:
     """Load the repository's root, which is the extension's package, under its fixed name."""
     if PACKAGE in sys.modules:
-        return
-    if not (ROOT / "__init__.py").exists():  # TEMPORARY until it is written
-        package = types.ModuleType(PACKAGE)
-        package.__path__ = [str(ROOT)]
-        sys.modules[PACKAGE] = package
         return
     spec = importlib.util.spec_from_file_location(PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)])
     assert spec is not None and spec.loader is not None

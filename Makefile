@@ -1,0 +1,49 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+PYTHON ?= python3
+MAIN := .venv/main/bin/python
+
+.DEFAULT_GOAL := help
+.PHONY: help venv zip demo test test-core test-blender bench lint format clean
+
+help: ## Say what can be made
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
+
+venv: ## Blender as a Python module, oldest and newest, with all that the tests need, in .venv
+	@$(PYTHON) -m tools.environments
+
+zip: venv ## The extension, one zip a platform, in dist
+	@$(MAIN) -m tools.build
+
+demo: zip ## Bake the example rooms with the built zip and put the pictures beside path-traced ones, in out/demo
+	@$(MAIN) -m tools.demo
+
+test: venv ## Everything: formatting, lint, types, all tests, the zip in real Blender and its window
+	@$(MAIN) -m tools.run_tests
+
+test-core: venv ## The tests of the numerics, without Blender
+	@$(MAIN) -m tools.run_tests core
+
+# make test-blender BLENDER=/opt/blender-4.5/blender, or BLENDER=tools/real_blender.py for Debian's
+test-blender: venv ## The Blender side's tests, in the bpy modules or in BLENDER=PATH
+ifdef BLENDER
+	@$(MAIN) -m tools.test_blender $(BLENDER)
+else
+	@$(MAIN) -m tools.run_tests "blender py"
+endif
+
+bench: ## Compare with other programs: accuracy, seconds, charts
+	@$(PYTHON) -m tools.environments bench
+	@$(MAIN) -m bench
+
+lint: venv ## Formatting, lint and types, without changing anything
+	@$(MAIN) -m tools.run_tests lint
+
+format: venv ## Format, and mend what the linter can mend
+	@$(MAIN) -m ruff format .
+	@$(MAIN) -m ruff check --fix .
+
+clean: ## Remove what was built and made; the cache outside the checkout stays
+	rm -rf .venv .cache .mypy_cache .ruff_cache .pytest_cache dist out wheels
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
