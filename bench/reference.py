@@ -24,14 +24,14 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from radiosity_bake.core.scene import Floats, Scene
+from radiosity_bake.core.scene import Floats, Scene, SurfaceMesh
 
 from .package import ROOT
 
 CACHE = ROOT / ".cache" / "reference"
 
 # Part of the cache's key: to be raised whenever the method below changes its numbers.
-METHOD = 1
+METHOD = 3
 
 # Mitsuba moves the origin of a ray by 9e-5 (1 + |p|): at an extent of 1000 units the 1 is negligible, and the shift
 # stays at 5e-5 of the scene, under the narrowest gap of our scenes (the Cornell lamp's, 2e-4).
@@ -175,7 +175,7 @@ def trace(
 class Tracer:
     """A scene inside Mitsuba, centred and scaled to `EXTENT`."""
 
-    def __init__(self, scene: Scene, rr_depth: int = 16) -> None:
+    def __init__(self, scene: Scene, rr_depth: int = 6) -> None:
         """Build Mitsuba's scene; paths meet Russian roulette from `rr_depth` on, which leaves no bias."""
         self.mi = load_mitsuba()
         everything = np.concatenate([mesh.vertices for mesh in scene.meshes])
@@ -313,28 +313,40 @@ class Tracer:
 
 
 def back_can_be_seen(scene: Scene, index: int) -> bool:
-    """Return whether light from the back of a mesh could reach anything else.
+    """Return whether light from the back of an emitting mesh could reach anything else.
 
     Not for a closed mesh with its front outward that has nothing within its bounds (a lamp), nor for one with its front
-    inward that holds everything (a room); `True` where in doubt.
+    inward that holds everything (a room), nor for a flat one that has nothing behind its planes (a panel in a ceiling);
+    `True` where in doubt.
     """
     mesh = scene.meshes[index]
-    if not is_closed(mesh.triangles):
-        return True
-    corners = mesh.vertices[mesh.triangles]
-    centre = mesh.vertices.mean(axis=0)
-    a, b, c = (corners[:, k] - centre for k in range(3))
-    outward = float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum()) > 0.0
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    others = [m.vertices for k, m in enumerate(scene.meshes) if k != index]
-    if not others:
-        return outward
-    rest = np.concatenate(others)
-    if outward:
+    others = [m for k, m in enumerate(scene.meshes) if k != index]
+    if is_closed(mesh.triangles):
+        if not is_outward(mesh):
+            return any(np.any((m.vertices < low) | (m.vertices > high)) for m in others)
         # Boxes of triangles, so that a large one that passes through is not missed.
-        triangles = np.concatenate([m.vertices[m.triangles] for k, m in enumerate(scene.meshes) if k != index])
-        return bool(np.any(np.all((triangles.min(axis=1) < high) & (triangles.max(axis=1) > low), axis=1)))
-    return not bool(np.all((rest >= low) & (rest <= high)))
+        boxes = [m.vertices[m.triangles] for m in others]
+        return any(
+            bool(np.any(np.all((t.min(axis=1) < high) & (t.max(axis=1) > low), axis=1))) for t in boxes if len(t)
+        )
+    corners = mesh.vertices[mesh.triangles[np.any(mesh.emission > 0.0, axis=1)]]
+    if len(corners) > 16:
+        return True
+    everything = np.concatenate([m.vertices for m in scene.meshes])
+    slack = 1e-6 * float(np.ptp(everything, axis=0).max())
+    for a, b, c in corners:
+        normal = np.cross(b - a, c - a)
+        length = np.linalg.norm(normal)
+        if length > 0.0 and np.any((everything - a) @ normal < -slack * length):
+            return True
+    return False
+
+
+def is_outward(mesh: SurfaceMesh) -> bool:
+    """Return whether a closed mesh encloses a positive volume."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] - mesh.vertices.mean(axis=0) for k in range(3))
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum()) > 0.0
 
 
 def is_closed(triangles: np.ndarray) -> bool:

@@ -149,7 +149,31 @@ def panel(name: str, low: ArrayLike, size: tuple[float, float], emission: ArrayL
 
 
 def cornell_box() -> Scene:
-    """The Cornell box with its measured coordinates and colours."""
+    """The Cornell box with its measured coordinates and colours, the lamp set into a hole of the ceiling.
+
+    Emitters glow on both sides, as in Cycles, so a lamp hung under the ceiling lights the strip of ceiling that it hides
+    100 times brighter than anything that is seen: that would be the mean, and the error, of the whole box. What hangs
+    like that is `cornell_box_hung`.
+    """
+    meshes = {mesh.name: mesh for mesh in cornell_box_hung().meshes}
+    ceiling, lamp = meshes["Ceiling"], meshes["Lamp"]
+    height = ceiling.vertices[:, 2].mean()
+    level = lamp.vertices * [1.0, 1.0, 0.0] + [0.0, 0.0, height]
+    outer, inner = ceiling.vertices, level
+    nearest = [int(np.linalg.norm(inner - corner, axis=1).argmin()) + 4 for corner in outer]
+    ring = [(k, (k + 1) % 4) for k in range(4)]
+    triangles = [t for a, b in ring for t in ((a, b, nearest[b]), (a, nearest[b], nearest[a]))]
+    meshes["Ceiling"] = surface_mesh(
+        "Ceiling", np.concatenate([outer, inner]), triangles, reflectance=ceiling.reflectance[0]
+    )
+    meshes["Lamp"] = surface_mesh(
+        "Lamp", level, lamp.triangles, reflectance=lamp.reflectance[0], emission=lamp.emission[0]
+    )
+    return Scene(tuple(meshes.values()), DARKNESS)
+
+
+def cornell_box_hung() -> Scene:
+    """The Cornell box as the demo has it: the lamp hangs 0.1 mm under the ceiling and lights it from there."""
     return scene_of(rooms.cornell_box())
 
 
@@ -325,6 +349,7 @@ def vertex_normals(vertices: Floats, triangles: Ints) -> Floats:
 
 SCENES: dict[str, Callable[[], Scene]] = {
     "cornell_box": cornell_box,
+    "cornell_box_hung": cornell_box_hung,
     "paper_scene_1": paper_scene_1,
     "paper_scene_2": paper_scene_2,
     "paper_scene_3": paper_scene_3,
