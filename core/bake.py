@@ -4,10 +4,64 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import refinement
+from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance
+from .clock import Clock
+from .direct import strongest_emitters
+from .error_estimate import relative_error
+from .errors import NoLightError
+from .gather import Gathered, GatherRays, fill_hidden, gather
+from .output import baked_meshes
+from .patches import coarse_patches
 from .progress import ProgressCallback, no_progress
+from .reachability import lit_sides
+from .receivers import Receivers, receivers
 from .result import BakeResult
-from .scene import Scene
+from .scene import Ints, Scene
 from .settings import BakeSettings
+from .solve import Solution, solve_balance
+from .subdivision import Faces, conforming_faces, input_faces
+from .surfaces import Surfaces, join
+from .transport import BYTES_PER_RAY, Transport
+from .visibility import RayScene
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What a quality stands for.
+
+    Attributes
+    ----------
+    patches : int
+        Patches that a uniform subdivision of the scene at the automatic minimum size would have, about.
+    rays_per_patch : int
+    gather : GatherRays
+    """
+
+    patches: int
+    rays_per_patch: int
+    gather: GatherRays
+
+
+EFFORTS = {
+    "DRAFT": Effort(2_000, 64, GatherRays(64, 16, 32)),
+    "GOOD": Effort(16_000, 128, GatherRays(256, 16, 96)),
+    "HIGH": Effort(64_000, 256, GatherRays(1024, 32, 384)),
+}
+
+WORKING_COPIES = 6
+"""Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
+
+FEWEST_RAYS_PER_PATCH = 16
+
+MOST_RAYS = 2**25
+"""Rays of the coarsest patches: above it each gets fewer, as the many patches of a dense mesh average each other out."""
 
 
 def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress) -> BakeResult:
@@ -20,4 +74,134 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     Cancelled
         When `progress` raised it.
     """
-    raise NotImplementedError
+    clock, effort = Clock(progress), EFFORTS[settings.quality]
+
+    clock.start("Preparing", 0.0, 0.02)
+    surfaces = join(scene)
+    if not (surfaces.emission.any() or surfaces.world.any()):
+        raise NoLightError("Nothing in the scene emits light; give a material some Emission, or the World a colour")
+    rays = RayScene(surfaces.points, surfaces.triangles, settings.threads)
+    lit = lit_sides(surfaces, rays, settings.seed)
+    solid = surfaces.closed & ~lit[:, 1]
+
+    clock.start("Coarse patches", 0.02, 0.03)
+    smallest = settings.minimum_size or automatic_size(surfaces, effort)
+    tree = coarse_patches(surfaces, smallest)
+    most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
+    per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
+    transport = Transport(surfaces, tree, rays, solid, per_row, settings.seed)
+
+    clock.start("Form factors", 0.03, 0.4)
+    rounds = subdivide(transport, lit, settings, smallest, most_rays // per_row, clock)
+
+    clock.start("Solving", 0.4, 0.5)
+    shares = transport.shares()
+    emitters = strongest_emitters(surfaces, solid)
+    balance = balance_of(transport, shares)
+    direct = direct_on_patches(transport, balance, emitters, clock.report)
+    solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas)
+    check_solved(solution, surfaces)
+    traced = rays.rays
+
+    clock.start("Gathering", 0.5, 0.97)
+    faces = input_faces(surfaces) if settings.output == "ORIGINAL" else conforming_faces(surfaces, tree)
+    face, side = wanted_sides(faces, surfaces, lit)
+    places = receivers(surfaces, faces, face, side)
+    radiance = seen_radiance(transport, balance, solution, emitters)
+    gathered = gather(transport, radiance, emitters, places, effort.gather, clock.report)
+    irradiance = fill_hidden(gathered.irradiance, gathered, places.of_corner)
+
+    clock.start("Reconstructing", 0.97, 1.0)
+    meshes, warnings = baked_meshes(scene, surfaces, faces, face, side, irradiance[places.of_corner], settings.output)
+    error = surface_error(surfaces, faces, face, side, places, gathered)
+    clock.stop()
+    report: dict[str, Any] = {
+        "patches": len(tree.leaves()),
+        "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
+        "triangles": sum(len(mesh.triangles) for mesh in meshes),
+        "rays": rays.rays,
+        "rays_by_kind": {"form_factors": traced, "gather": rays.rays - traced},
+        "seconds": clock.seconds,
+        "seconds_in_ray_library": rays.seconds,
+        "iterations": solution.iterations,
+        "residual": solution.residual,
+        "converged": solution.converged,
+        "estimated_error": error,
+        "form_factor_standard_error": refinement.largest_standard_error(shares),
+        "energy": energy(balance, solution, surfaces),
+        "minimum_size": smallest,
+        "rounds": rounds.as_report(),
+        "ended": rounds.ended,
+        "settings": asdict(settings),
+        "warnings": [*surfaces.warnings, *warnings, *limit_warnings(rounds, solution, per_row, effort)],
+    }
+    return BakeResult(meshes, report)
+
+
+def automatic_size(surfaces: Surfaces, effort: Effort) -> float:
+    """The minimum size n at which the baked surfaces, cut uniformly, have about `effort.patches` patches."""
+    area = float(surfaces.areas[surfaces.baked].sum())
+    # A right isosceles triangle of longest edge s has the area s^2 / 4, and sizes lie between n and 2n.
+    return float(np.sqrt(4.0 * area / effort.patches) / np.sqrt(2.0))
+
+
+def rays_that_fit(wanted: int, most: int, patches: int) -> int:
+    """Rays for each patch, halved from `wanted` until all patches together have at most `most`."""
+    while wanted > FEWEST_RAYS_PER_PATCH and wanted * patches > most:
+        wanted //= 2
+    return wanted
+
+
+def subdivide(
+    transport: Transport,
+    lit: NDArray[np.bool_],
+    settings: BakeSettings,
+    smallest: float,
+    most_patches: int,
+    clock: Clock,
+) -> refinement.Refinement:
+    """Subdivide by the method asked for; every element that takes part has been traced afterwards."""
+    tree, surfaces = transport.tree, transport.surfaces
+
+    def seeds() -> Ints:
+        leaves = tree.leaves()
+        leaves = leaves[surfaces.baked[tree.triangle[leaves]]]
+        behind = leaves[lit[surfaces.shell_of_triangle[tree.triangle[leaves]], 1]]
+        return np.sort(np.concatenate([2 * leaves, 2 * behind + 1]))
+
+    def report(share: float) -> None:
+        clock.report(share, f"{len(tree.leaves()):,} patches, {transport.rays.rays:,} rays")
+
+    if settings.method == "ADAPTIVE":
+        return refinement.refine(transport, seeds, settings.threshold, smallest, most_patches, report)
+    return refinement.refine_uniformly(transport, seeds, smallest, most_patches, report)
+
+
+def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Faces and sides that get values: every front, and the backs that light reaches, both (f,)."""
+    count = len(faces.triangle)
+    behind = np.flatnonzero(lit[surfaces.shell_of_triangle[faces.triangle], 1])
+    face = np.concatenate([np.arange(count), behind])
+    return face, np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
+
+
+def surface_error(
+    surfaces: Surfaces, faces: Faces, face: Ints, side: Ints, places: Receivers, gathered: Gathered
+) -> float:
+    """Estimated relative RMS error over what was baked, emitters and hidden places left out."""
+    hidden = gathered.buried | gathered.enclosed
+    counted = ~surfaces.emission[faces.triangle[face]].any(axis=1) & ~hidden[places.of_corner].any(axis=1)
+    corners = faces.points[faces.corners[face]]
+    return relative_error(corners, places.of_corner, gathered.irradiance, gathered.noise, counted)
+
+
+def limit_warnings(rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort) -> list[str]:
+    """Sentences on limits that the bake ran into."""
+    warnings = []
+    if rounds.ended == refinement.LIMIT_MET:
+        warnings.append("The memory limit ended the subdivision early; raise it or the minimum size for an even result")
+    if rays_per_patch < effort.rays_per_patch:
+        warnings.append(f"The scene has so many triangles that each patch was given {rays_per_patch} rays only")
+    if not solution.converged:
+        warnings.append(f"The energy balance was solved to a residual of {solution.residual:.1e} only")
+    return warnings

@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The energy balance of the traced elements: what goes into the solver, and what comes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .direct import Emitters, direct_irradiance
+from .errors import UnsolvableError
+from .gather import Radiance
+from .scene import Floats, Ints
+from .solve import Exchange, Solution
+from .surfaces import Surfaces
+from .transport import ESCAPED, Shares, Transport, sample_points
+
+POINTS_PER_PATCH = 4
+"""Points of a patch at which direct light is computed for the transport."""
+
+SHADOW_RAYS_PER_POINT = 8
+"""Shadow rays of each of them: 32 a patch, and the gather averages over hundreds of patches."""
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """The traced elements, numbered 0 to m - 1, and their form factors.
+
+    Attributes
+    ----------
+    elements : (m,) int
+    exchange : Exchange
+    escape : (m,) float
+        Share of each element's rays that leave the scene.
+    areas : (m,) float
+        Area that is not inside a solid.
+    buried : (m,) float
+        Share of the area that is.
+    reflectance, emission : (m, 3) float
+    """
+
+    elements: Ints
+    exchange: Exchange
+    escape: Floats
+    areas: Floats
+    buried: Floats
+    reflectance: Floats
+    emission: Floats
+
+
+def balance_of(transport: Transport, shares: Shares) -> Balance:
+    """Number the traced elements and sort their form factors into what is exchanged and what escapes."""
+    surfaces, tree = transport.surfaces, transport.tree
+    elements = np.flatnonzero(transport.has_row())
+    number = np.full(2 * len(tree), -1, dtype=np.int64)
+    number[elements] = np.arange(len(elements))
+    lost = shares.source == ESCAPED
+    escape = np.zeros(len(elements))
+    escape[number[shares.receiver[lost]]] = shares.share[lost]
+    receiver, source = number[shares.receiver[~lost]], number[shares.source[~lost]]
+    nodes, triangle = elements >> 1, tree.triangle[elements >> 1]
+    a, b, c = (tree.points[tree.corners[nodes, k]] for k in range(3))
+    buried = transport.buried_share()[elements]
+    return Balance(
+        elements,
+        Exchange(receiver, source, shares.share[~lost]),
+        escape,
+        np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried),
+        buried,
+        surfaces.reflectance[triangle],
+        surfaces.emission[triangle],
+    )
+
+
+def explicit_emission(transport: Transport, balance: Balance, emitters: Emitters) -> Floats:
+    """The emission of elements that is left to rays: zero where the emitter is sampled explicitly, (m, 3)."""
+    explicit = np.zeros(len(transport.surfaces.triangles), dtype=bool)
+    explicit[emitters.triangle] = True
+    triangle = transport.tree.triangle[balance.elements >> 1]
+    return np.where(explicit[triangle][:, None], 0.0, balance.emission)
+
+
+def direct_on_patches(
+    transport: Transport, balance: Balance, emitters: Emitters, report: Callable[[float], None]
+) -> Floats:
+    """Irradiance over pi of each element that is not reflected radiance: emitters and the world, (m, 3)."""
+    surfaces, tree, seed = transport.surfaces, transport.tree, transport.seed
+
+    def work(first: int, last: int) -> Floats:
+        elements = balance.elements[first:last]
+        points, normals = sample_points(surfaces, tree, elements, POINTS_PER_PATCH, seed + 51)
+        keys = np.repeat(elements, POINTS_PER_PATCH) * POINTS_PER_PATCH + np.tile(
+            np.arange(POINTS_PER_PATCH), len(elements)
+        )
+        light, _ = direct_irradiance(
+            emitters, transport.rays, points, normals, normals, keys, SHADOW_RAYS_PER_POINT, seed + 52
+        )
+        return light.reshape(-1, POINTS_PER_PATCH, 3).mean(axis=1)
+
+    rays_each = POINTS_PER_PATCH * SHADOW_RAYS_PER_POINT
+    parts = transport.rays.map(work, len(balance.elements), rays_each, report)
+    direct = np.concatenate(parts) if parts else np.zeros((0, 3))
+    # Points inside a solid see no light; the mean is over the others.
+    direct /= np.maximum(1.0 - balance.buried, 1.0 / POINTS_PER_PATCH)[:, None]
+    by_rays = balance.exchange.apply(explicit_emission(transport, balance, emitters))
+    return direct + by_rays + balance.escape[:, None] * surfaces.world
+
+
+def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Radiance:
+    """What gather rays see on each element: reflected light, and emission that is not sampled explicitly."""
+    size = 2 * len(transport.tree)
+    values, dark = np.zeros((size, 3)), np.zeros(size, dtype=bool)
+    values[balance.elements] = solution.reflected + explicit_emission(transport, balance, emitters)
+    unlit = ~(solution.reflected + balance.emission).any(axis=1)
+    dark[balance.elements] = unlit & (balance.reflectance.any(axis=1) | (balance.elements & 1 == 1))
+    return Radiance.of(values, dark, transport.surfaces.world)
+
+
+def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:
+    """Where the power goes, in W summed over the channels (for lengths in metres).
+
+    `imbalance` is what emission and world bring in less what is absorbed and what leaves, as a share of what comes in:
+    the form factors are sampled, so it is a check on them.
+    """
+    area = np.pi * balance.areas[:, None]
+    emitted = float((area * balance.emission).sum())
+    world = float((area * balance.escape[:, None] * surfaces.world).sum())
+    reflected = float((area * solution.reflected).sum())
+    absorbed = float((area * (1.0 - balance.reflectance) * solution.incident).sum())
+    escaped = float((area * (balance.emission + solution.reflected) * balance.escape[:, None]).sum())
+    total = emitted + world
+    return {
+        "emitted": emitted,
+        "from_world": world,
+        "reflected": reflected,
+        "absorbed": absorbed,
+        "escaped": escaped,
+        "imbalance": (total - absorbed - escaped) / total if total > 0.0 else 0.0,
+    }
+
+
+def check_solved(solution: Solution, surfaces: Surfaces) -> None:
+    """Raise where the balance has no finite solution.
+
+    Raises
+    ------
+    UnsolvableError
+        When the solver got nowhere and some surface reflects all light.
+    """
+    if not np.isfinite(solution.reflected).all() or (not solution.converged and surfaces.reflectance.max() >= 1.0):
+        raise UnsolvableError(
+            "Light is trapped between surfaces that reflect all of it; give the materials base colours below 1"
+        )

@@ -1,0 +1,219 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Direct light of emitting triangles: exact form factors times the visible share of what they stand for.
+
+Every receiver point spreads a fixed number of shadow rays over the emitters in proportion to what each would send it
+unoccluded. An emitter that is due less than one ray is drawn with that probability and weighted by its inverse
+(systematic sampling), so thousands of emitters cost no more rays than one and the expectation is exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .form_factors import point_to_triangle
+from .sampling import hashed, sequence, triangle_weights
+from .scene import Floats, Ints
+from .surfaces import Surfaces
+from .visibility import RayScene
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Rec. 709 luminance of linear RGB."""
+
+LARGEST_EMITTER_COUNT = 4096
+"""Emitters sampled one by one; the rest, weakest first, are left to the rays that happen to hit them."""
+
+PAIRS_PER_BATCH = 2**18
+"""Receiver and emitter pairs weighed at once: some 50 MB of working arrays for each thread."""
+
+
+@dataclass(frozen=True, eq=False)
+class Emitters:
+    """Triangles whose light is computed explicitly.
+
+    Attributes
+    ----------
+    triangle : (k,) int
+        Index into the surfaces' triangles.
+    corners : (k, 3, 3) float
+    normals : (k, 3) float
+    areas : (k,) float
+    radiance : (k, 3) float, W m^-2 sr^-1
+    one_sided : (k,) bool
+        Emitters on solids, whose backs nothing sees.
+    """
+
+    triangle: Ints
+    corners: Floats
+    normals: Floats
+    areas: Floats
+    radiance: Floats
+    one_sided: NDArray[np.bool_]
+
+
+def strongest_emitters(surfaces: Surfaces, solid: NDArray[np.bool_]) -> Emitters:
+    """Choose the emitters that rays would sample worst: by area times squared radiance, as their variance goes.
+
+    Parameters
+    ----------
+    solid : (shells,) bool
+        Shells whose inside is out of reach.
+    """
+    luminance = surfaces.emission @ LUMINANCE
+    weight = surfaces.areas * luminance**2
+    count = min(int((weight > 0.0).sum()), LARGEST_EMITTER_COUNT)
+    chosen = np.sort(np.argsort(-weight, kind="stable")[:count])
+    return Emitters(
+        chosen,
+        surfaces.points[surfaces.triangles[chosen]],
+        surfaces.normals[chosen],
+        surfaces.areas[chosen],
+        surfaces.emission[chosen],
+        solid[surfaces.shell_of_triangle[chosen]],
+    )
+
+
+def direct_irradiance(
+    emitters: Emitters,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    keys: Ints,
+    shadow_rays: int,
+    seed: int,
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Direct irradiance over pi at points.
+
+    Parameters
+    ----------
+    points, normals : (n, 3) float
+        Receivers and the axes of their hemispheres.
+    lift : (n, 3) float
+        The side of the true surface that shadow rays start on.
+    keys : (n,) int
+        Numbers of the receivers, for their sampling patterns.
+    shadow_rays : int
+        Rays each receiver spreads over all emitters.
+
+    Returns
+    -------
+    irradiance : (n, 3) float, W m^-2 sr^-1
+    penumbra : (n,) bool
+        Receivers that see some emitter in part.
+    """
+    total = np.zeros((len(points), 3))
+    penumbra = np.zeros(len(points), dtype=bool)
+    if len(emitters.triangle) == 0 or len(points) == 0:
+        return total, penumbra
+    size = max(1, PAIRS_PER_BATCH // max(len(emitters.triangle), shadow_rays))
+    for first in range(0, len(points), size):
+        part = slice(first, first + size)
+        total[part], penumbra[part] = _direct_part(
+            emitters, rays, points[part], normals[part], lift[part], keys[part], shadow_rays, seed
+        )
+    return total, penumbra
+
+
+def _direct_part(
+    emitters: Emitters,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    keys: Ints,
+    shadow_rays: int,
+    seed: int,
+) -> tuple[Floats, NDArray[np.bool_]]:
+    share = _expected_shares(emitters, points, normals, lift)
+    lit = np.flatnonzero(share.any(axis=1))
+    count = len(points)
+    irradiance, penumbra = np.zeros((count, 3)), np.zeros(count, dtype=bool)
+    if len(lit) == 0:
+        return irradiance, penumbra
+    points, normals, lift, share = points[lit], normals[lit], lift[lit], share[lit]
+    shift = hashed(keys[lit], 3, seed)
+    emitter = _systematic_draw(share, shadow_rays, shift[:, 2])
+
+    flat_emitter = emitter.ravel()
+    receiver = np.repeat(np.arange(len(lit)), shadow_rays)
+    square = np.mod(sequence(0, shadow_rays, 2)[None] + shift[:, None, :2], 1.0).reshape(-1, 2)
+    target = _points_on(emitters.corners[flat_emitter], triangle_weights(square))
+    kernel = _kernel(points[receiver], normals[receiver], lift[receiver], target, emitters, flat_emitter)
+    ask = np.flatnonzero(kernel > 0.0)
+    seen = np.zeros(len(kernel))
+    seen[ask] = rays.visible(points[receiver[ask]], lift[receiver[ask]], target[ask])
+
+    starts = np.flatnonzero(np.diff(receiver * np.int64(len(share[0])) + flat_emitter, prepend=-1))
+    weight = np.add.reduceat(kernel, starts)
+    visible = np.add.reduceat(kernel * seen, starts)
+    visible = np.divide(visible, weight, out=np.zeros_like(visible), where=weight > 0.0)
+    row, chosen = receiver[starts], flat_emitter[starts]
+    factor = point_to_triangle(points[row], normals[row], emitters.corners[chosen])
+    probability = np.minimum(1.0, share[row, chosen] * shadow_rays)
+    light = (factor * visible / probability)[:, None] * emitters.radiance[chosen]
+    for channel in range(3):
+        irradiance[lit, channel] = np.bincount(row, weights=light[:, channel], minlength=len(lit))
+    partly = (visible > 0.0) & (visible < 1.0)
+    penumbra[lit] = np.bincount(row, weights=partly, minlength=len(lit)) > 0
+    # A draw that stands for many emitters is noisy even where each is fully seen or hidden.
+    penumbra[lit] |= np.bincount(row, weights=probability < 1.0, minlength=len(lit)) > 0
+    return irradiance, penumbra
+
+
+def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, lift: Floats) -> Floats:
+    """Each emitter's share of the unoccluded direct light of each point, roughly, (n, k); 0 where it sends none."""
+    centre = emitters.corners.mean(axis=1)
+    toward = centre[None] - points[:, None]
+    square = np.einsum("nkx,nkx->nk", toward, toward)
+    distance = np.sqrt(square) + 1e-300
+    # The highest corner decides, so that an emitter which only peeks over the horizon is not forgotten.
+    heights = [emitters.corners[:, k] @ normals.T - np.einsum("nx,nx->n", points, normals) for k in range(3)]
+    height = np.max(heights, axis=0).T
+    facing = -np.einsum("nkx,kx->nk", toward, emitters.normals)
+    facing = np.where(emitters.one_sided, facing, np.abs(facing))
+    above = np.max([emitters.corners[:, k] @ lift.T - np.einsum("nx,nx->n", points, lift) for k in range(3)], axis=0).T
+    cosines = np.clip(height, 0.0, distance) * np.maximum(facing, 0.0) / (distance * distance)
+    # The area in the denominator bounds the estimate near the emitter; a floor keeps a share for its near half when
+    # its centre is seen edge on.
+    value = (cosines + 0.01 * (cosines > 0.0)) * emitters.areas / (square + emitters.areas)
+    value = np.where((height > 0.0) & (above > 0.0) & (facing > 0.0), value, 0.0) * (emitters.radiance @ LUMINANCE)
+    total = value.sum(axis=1, keepdims=True)
+    return np.divide(value, total, out=np.zeros_like(value), where=total > 0.0)
+
+
+def _systematic_draw(share: Floats, draws: int, offset: Floats) -> Ints:
+    """Draw emitters in proportion to their shares at equal steps from a random start; sorted, (n, draws)."""
+    count, emitters = share.shape
+    cumulative = np.cumsum(share, axis=1)
+    cumulative /= cumulative[:, -1:]
+    row = np.arange(count, dtype=np.float64)[:, None]
+    step = (np.arange(draws) + offset[:, None]) / draws
+    found = np.searchsorted((cumulative + row).ravel(), (step + row).ravel(), side="right").reshape(count, draws)
+    drawn = np.clip(found - np.arange(count)[:, None] * emitters, 0, emitters - 1)
+    # Rounding may land on a neighbour without a share; take the last one that has some.
+    last = emitters - 1 - np.argmax(share[:, ::-1] > 0.0, axis=1)
+    drawn = np.minimum(drawn, last[:, None])
+    empty = np.take_along_axis(share, drawn, axis=1) <= 0.0
+    return np.where(empty, np.argmax(share, axis=1)[:, None], drawn) if empty.any() else drawn
+
+
+def _points_on(corners: Floats, weights: Floats) -> Floats:
+    u, v = weights[:, :1], weights[:, 1:]
+    return corners[:, 0] * (1.0 - u - v) + corners[:, 1] * u + corners[:, 2] * v
+
+
+def _kernel(
+    points: Floats, normals: Floats, lift: Floats, target: Floats, emitters: Emitters, chosen: Ints
+) -> NDArray[np.float64]:
+    """cos cos / r^2 between receivers and points on emitters, 0 below a horizon, (m,)."""
+    toward = target - points
+    square = np.einsum("mx,mx->m", toward, toward)
+    cosine = np.maximum(np.einsum("mx,mx->m", toward, normals), 0.0)
+    facing = -np.einsum("mx,mx->m", toward, emitters.normals[chosen])
+    facing = np.where(emitters.one_sided[chosen], np.maximum(facing, 0.0), np.abs(facing))
+    value = cosine * facing / np.maximum(square * square, np.finfo(np.float64).tiny)
+    return np.where(np.einsum("mx,mx->m", toward, lift) > 0.0, value, 0.0)

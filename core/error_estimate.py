@@ -1,0 +1,85 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far off a baked mesh is: noise of the gather, and what linear interpolation between vertices misses."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .direct import LUMINANCE
+from .scene import Floats, Ints
+
+
+def gradients(corners: Floats, values: Floats) -> Floats:
+    """Gradient of a linear function on each triangle, in its plane, (f, 3).
+
+    Parameters
+    ----------
+    corners : (f, 3, 3) float
+    values : (f, 3) float
+        At the corners.
+    """
+    e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    d1, d2 = values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]
+    g11, g12, g22 = (np.einsum("fx,fx->f", a, b) for a, b in ((e1, e1), (e1, e2), (e2, e2)))
+    det = g11 * g22 - g12 * g12
+    det = np.where(det > 0.0, det, np.inf)
+    a, b = (d1 * g22 - d2 * g12) / det, (d2 * g11 - d1 * g12) / det
+    return a[:, None] * e1 + b[:, None] * e2
+
+
+def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Floats:
+    """Estimated RMS error of linear interpolation on each face, (f,), in the unit of `values`.
+
+    Where a smooth function is interpolated, the gradient jumps across an edge by about its second derivative times the
+    distance h of the faces' middles, and the error in between is h^2 / 8 times that derivative (Zienkiewicz & Zhu 1987
+    estimate the same from the recovered gradient).
+
+    Parameters
+    ----------
+    corners : (f, 3, 3) float, scene units
+    of_corner : (f, 3) int
+        Receivers of the corners: faces that share two are neighbours.
+    values : (n,) float
+        At the receivers.
+    """
+    gradient = gradients(corners, values[of_corner])
+    start, end = of_corner.ravel(), np.roll(of_corner, -1, axis=1).ravel()
+    key = np.minimum(start, end) * np.int64(len(values)) + np.maximum(start, end)
+    face = np.repeat(np.arange(len(corners)), 3)
+    order = np.argsort(key, kind="stable")
+    pair = np.flatnonzero(key[order][1:] == key[order][:-1])
+    first, second = face[order[pair]], face[order[pair + 1]]
+    jump = np.linalg.norm(gradient[first] - gradient[second], axis=1)
+    length = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).ravel()[order[pair]]
+    missed = jump * length / 8.0
+    square = np.zeros(len(corners))
+    for side in (first, second):
+        np.maximum.at(square, side, missed**2)
+    return np.sqrt(square)
+
+
+def relative_error(
+    corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: np.ndarray
+) -> float:
+    """Estimated RMS error over the surface relative to its mean: interpolation and noise added in squares.
+
+    Parameters
+    ----------
+    corners : (f, 3, 3) float
+    of_corner : (f, 3) int
+    irradiance : (n, 3) float
+    noise : (n,) float
+    counted : (f,) bool
+        Faces that count (emitters and buried ones do not).
+    """
+    if not counted.any():
+        return 0.0
+    luminance = irradiance @ LUMINANCE
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    weight = area * counted / (area * counted).sum()
+    missed = interpolation_error(corners, of_corner, luminance)
+    # Noise is independent from vertex to vertex; a linear mix of three keeps half of its variance on average.
+    square = missed**2 + (noise[of_corner] ** 2).mean(axis=1) / 2.0
+    mean = float((weight * luminance[of_corner].mean(axis=1)).sum())
+    return float(np.sqrt((weight * square).sum()) / mean) if mean > 0.0 else 0.0

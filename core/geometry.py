@@ -1,0 +1,95 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangles, edges and connected pieces of meshes, as array operations."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .scene import Floats, Ints
+
+WELD_CELLS = 2**20
+"""Vertices that fall into the same cell of a grid this fine over a mesh count as one (1e-6 of its size)."""
+
+
+def triangle_cross(points: Floats, triangles: Ints) -> Floats:
+    """Cross product of the first two edges of each triangle, (t, 3): the normal times twice the area."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    return np.cross(b - a, c - a)
+
+
+def normalized(vectors: Floats) -> Floats:
+    """Vectors of length 1 along the last axis; the zero vector stays zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
+
+
+def edge_lengths(points: Floats, triangles: Ints) -> Floats:
+    """Lengths of the edges 0-1, 1-2 and 2-0 of each triangle, (t, 3)."""
+    corners = points[triangles]
+    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+
+
+def welded(points: Floats) -> Ints:
+    """For each vertex the lowest index of a vertex at the same place, (v,).
+
+    Positions are compared on a grid of `WELD_CELLS` over the largest extent, so seams that were split in the data are
+    one place here.
+    """
+    if len(points) == 0:
+        return np.zeros(0, dtype=np.int64)
+    low = points.min(axis=0)
+    extent = float((points.max(axis=0) - low).max())
+    cells = np.rint((points - low) * (WELD_CELLS / extent if extent > 0.0 else 0.0)).astype(np.int64)
+    key = (cells[:, 0] * (WELD_CELLS + 1) + cells[:, 1]) * (WELD_CELLS + 1) + cells[:, 2]
+    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+    return first[inverse].astype(np.int64)
+
+
+def connected_components(pairs: Ints, count: int) -> Ints:
+    """Label of the connected component of each of `count` things joined by `pairs` (m, 2): its lowest member, (count,)."""
+    label = np.arange(count, dtype=np.int64)
+    while True:
+        ends = label[pairs]
+        low, high = ends.min(axis=1), ends.max(axis=1)
+        differ = low != high
+        if not differ.any():
+            return label
+        np.minimum.at(label, high[differ], low[differ])
+        while True:
+            jumped = label[label]
+            if np.array_equal(jumped, label):
+                break
+            label = jumped
+
+
+def triangle_shells(triangles: Ints, vertex_count: int) -> tuple[Ints, NDArray[np.bool_]]:
+    """Split triangles into shells: pieces connected by vertices.
+
+    Parameters
+    ----------
+    triangles : (t, 3) int
+        Welded vertex indices.
+
+    Returns
+    -------
+    shell_of_triangle : (t,) int
+        Numbered from 0 in order of first appearance of their lowest vertex.
+    closed : (shells,) bool
+        Whether every edge of the shell joins exactly two triangles that run through it in opposite directions: then
+        the shell has an inside.
+    """
+    pairs = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]]])
+    label = connected_components(pairs, vertex_count)[triangles[:, 0]]
+    _, shell = np.unique(label, return_inverse=True)
+    shell = shell.astype(np.int64)
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    directed, count = np.unique(start * vertex_count + end, return_counts=True)
+    place = np.searchsorted(directed, end * vertex_count + start)
+    place = np.minimum(place, len(directed) - 1)
+    own = np.searchsorted(directed, start * vertex_count + end)
+    matched = (directed[place] == end * vertex_count + start) & (count[place] == 1) & (count[own] == 1)
+    shells = int(shell.max()) + 1 if len(shell) else 0
+    open_edges = np.bincount(np.repeat(shell, 3), weights=~matched, minlength=shells)
+    return shell, open_edges == 0

@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The baked meshes: values sorted back to the meshes and corners that they belong to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .result import BakedMesh
+from .scene import Floats, Ints, Scene
+from .subdivision import Faces
+from .surfaces import Surfaces
+
+
+def baked_meshes(
+    scene: Scene, surfaces: Surfaces, faces: Faces, face: Ints, side: Ints, irradiance: Floats, output: str
+) -> tuple[tuple[BakedMesh, ...], list[str]]:
+    """Make the meshes of the result, and warnings about those whose lit side is their back.
+
+    Parameters
+    ----------
+    face, side : (f,) int
+        Face sides with values: all fronts in order, then some backs.
+    irradiance : (f, 3, 3) float, W m^-2 sr^-1
+        At their corners.
+    """
+    count = len(faces.triangle)
+    front = irradiance[:count]
+    back, has_back = np.zeros_like(front), np.zeros(count, dtype=bool)
+    back[face[count:]], has_back[face[count:]] = irradiance[count:], True
+    turned = _lit_from_behind(surfaces, faces, front, back, has_back)
+    warnings, meshes = [], []
+    mesh_of_face = surfaces.mesh_of_triangle[faces.triangle]
+    for number, mesh in enumerate(scene.meshes):
+        if not mesh.baked:
+            continue
+        chosen = np.flatnonzero(mesh_of_face == number)
+        if turned[chosen].any():
+            warnings.append(
+                f"{mesh.name}: light reaches only the back of its faces; "
+                + ("the refined mesh is turned over" if output == "REFINED" else "flip its normals to see it lit")
+            )
+        values = front[chosen], back[chosen] if has_back[chosen].any() else None
+        if output == "ORIGINAL":
+            meshes.append(_original(scene, surfaces, faces, number, chosen, *values))
+        else:
+            meshes.append(_refined(surfaces, faces, number, chosen, *values, turned[chosen]))
+    return tuple(meshes), warnings
+
+
+def _lit_from_behind(
+    surfaces: Surfaces, faces: Faces, front: Floats, back: Floats, has_back: np.ndarray
+) -> np.ndarray:
+    """Faces of shells whose front gets no light at all while their back does, (s,) bool."""
+    shell = surfaces.shell_of_triangle[faces.triangle]
+    size = len(surfaces.closed)
+    on_front = np.bincount(shell, weights=front.sum(axis=(1, 2)), minlength=size)
+    on_back = np.bincount(shell, weights=back.sum(axis=(1, 2)) * has_back, minlength=size)
+    return ((on_front == 0.0) & (on_back > 0.0))[shell]
+
+
+def _original(
+    scene: Scene, surfaces: Surfaces, faces: Faces, number: int, chosen: Ints, front: Floats, back: Floats | None
+) -> BakedMesh:
+    """Values at the corners of the input's triangles, in their order; triangles that were left out stay black."""
+    mesh = scene.meshes[number]
+    place = surfaces.input_triangle[faces.triangle[chosen]]
+    count = len(mesh.triangles)
+
+    def spread(values: Floats) -> Floats:
+        full = np.zeros((count, 3, 3))
+        full[place] = values
+        return full
+
+    def radiosity(irradiance: Floats) -> Floats:
+        return mesh.emission[:, None, :] + mesh.reflectance[:, None, :] * irradiance
+
+    irradiance = spread(front)
+    behind = None if back is None else spread(back)
+    return BakedMesh(
+        mesh=number,
+        vertices=mesh.vertices,
+        triangles=mesh.triangles,
+        parent_triangle=np.arange(count),
+        barycentric=np.broadcast_to(np.eye(3), (count, 3, 3)).copy(),
+        corner_normals=mesh.corner_normals,
+        radiosity=np.nan_to_num(radiosity(irradiance)),
+        irradiance=irradiance,
+        radiosity_back=None if behind is None else np.nan_to_num(radiosity(behind)),
+        irradiance_back=behind,
+    )
+
+
+def _refined(
+    surfaces: Surfaces, faces: Faces, number: int, chosen: Ints, front: Floats, back: Floats | None, turned: np.ndarray
+) -> BakedMesh:
+    """The conforming subdivision of one mesh, shells that are lit from behind turned over."""
+    first, last = surfaces.first_point_of_mesh[number : number + 2]
+    made = np.flatnonzero(faces.mesh_of_point == number)
+    made = np.intersect1d(made[made >= surfaces.first_point_of_mesh[-1]], faces.corners[chosen])
+    index = np.full(len(faces.points), -1, dtype=np.int64)
+    kept = np.concatenate([np.arange(first, last), made])
+    index[kept] = np.arange(len(kept))
+    triangle = faces.triangle[chosen]
+    emission, reflectance = surfaces.emission[triangle][:, None], surfaces.reflectance[triangle][:, None]
+    normals = faces.corner_normals(surfaces)[chosen]
+    irradiance, behind = front, back
+    if back is not None and turned.any():
+        irradiance = np.where(turned[:, None, None], back, front)
+        behind = np.where(turned[:, None, None], front, back)
+        normals = np.where(turned[:, None, None], -normals, normals)
+    if behind is not None and not behind.any():
+        behind = None
+    order = np.where(turned[:, None], [0, 2, 1], [0, 1, 2])
+
+    def ordered(values: Floats) -> Floats:
+        return np.take_along_axis(values, order[:, :, None], axis=1)
+
+    return BakedMesh(
+        mesh=number,
+        vertices=faces.points[kept],
+        triangles=index[np.take_along_axis(faces.corners[chosen], order, axis=1)],
+        parent_triangle=surfaces.input_triangle[triangle],
+        barycentric=ordered(faces.weights[chosen]),
+        corner_normals=ordered(normals),
+        radiosity=ordered(emission + reflectance * irradiance),
+        irradiance=ordered(irradiance),
+        radiosity_back=None if behind is None else ordered(emission + reflectance * behind),
+        irradiance_back=None if behind is None else ordered(behind),
+    )

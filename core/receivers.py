@@ -1,0 +1,84 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where light is gathered: one receiver for all face corners that share a place, a shading normal and a side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .geometry import normalized
+from .reachability import side_normals
+from .scene import Floats, Ints
+from .subdivision import Faces
+from .surfaces import Surfaces
+
+NORMAL_CELLS = 1024
+"""Shading normals closer than about 1/1024 count as one: corners of a smooth or flat surface share a value, corners on
+the two sides of a hard edge do not."""
+
+INWARD = 0.02
+"""Share of the way from a vertex towards the middle of its faces at which light is gathered: a vertex on the border of
+a face may lie in the plane of the next wall, where no ray can tell the two sides apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Receivers:
+    """Points that light is gathered at.
+
+    Attributes
+    ----------
+    points, normals, lift : (n, 3) float
+        Position, shading normal (the axis of the hemisphere) and unit normal of the surface itself.
+    keys : (n,) int
+        Number for the sampling pattern: the same for all receivers at a place, so that hard edges do not shimmer.
+    of_corner : (f, 3) int
+        The receiver of each face corner, for the face sides given.
+    """
+
+    points: Floats
+    normals: Floats
+    lift: Floats
+    keys: Ints
+    of_corner: Ints
+
+
+def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) -> Receivers:
+    """Group the corners of face sides into receivers.
+
+    Parameters
+    ----------
+    face_of_side : (f,) int
+    side : (f,) int
+        The faces and their sides (1: the back) that want values.
+    """
+    corners, points = faces.corners[face_of_side], faces.points
+    shading = side_normals(
+        faces.corner_normals(surfaces)[face_of_side].reshape(-1, 3), np.repeat(side, 3)
+    )
+    place = faces.places[corners].ravel()
+    cells = np.rint(shading * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS
+    span = 2 * NORMAL_CELLS + 1
+    key = place * span**3 + (cells[:, 0] * span + cells[:, 1]) * span + cells[:, 2]
+    _, first, group = np.unique(key, return_index=True, return_inverse=True)
+    count = len(first)
+
+    def mean(values: Floats) -> Floats:
+        total = np.stack([np.bincount(group, weights=values[:, k], minlength=count) for k in range(3)], axis=1)
+        return total / np.bincount(group, minlength=count)[:, None]
+
+    geometric = side_normals(surfaces.normals[faces.triangle[face_of_side]], side)
+    lift = normalized(mean(np.repeat(geometric, 3, axis=0)))
+    position = points[corners.ravel()[first]]
+    middles = points[corners].mean(axis=1)
+    inward = mean(np.repeat(middles, 3, axis=0)) - position
+    # Only along the surface: towards the middle of a bulge would lead below it.
+    inward -= np.einsum("nx,nx->n", inward, lift)[:, None] * lift
+    return Receivers(
+        position + INWARD * inward,
+        normalized(mean(shading)),
+        lift,
+        place[first],
+        group.reshape(-1, 3),
+    )

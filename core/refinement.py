@@ -1,0 +1,197 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Subdivision of the scene by form factors: Kulyasov & Nikulin 2010, steps 2 to 6, and the uniform one beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .patches import PatchTree
+from .scene import Floats, Ints
+from .transport import ESCAPED, Shares, Transport
+
+MOST_BLOCKS = 4
+"""Blocks of rays an element may have; the second to last are for pairs too close to the threshold to decide."""
+
+THRESHOLD_MET = "every form factor is below the threshold"
+SIZE_MET = "every fragment whose form factor is above the threshold is at the minimum size"
+UNIFORM_MET = "every fragment is at the minimum size"
+LIMIT_MET = "the memory limit allows no more fragments"
+
+
+@dataclass(frozen=True)
+class Round:
+    """What one round of the loop did.
+
+    Attributes
+    ----------
+    fragments : int
+        Leaves at the start of the round.
+    new_rows : int
+        Elements traced in it: only new receivers, and more rays for undecided ones.
+    rays : int
+        Rays traced in it.
+    split : int
+        Fragments split at its end.
+    rays_moved : int
+        Rays that met a split fragment and moved to a child without being traced.
+    largest_form_factor : float
+        Over all pairs whose source could still be split; 0 if there is none.
+    """
+
+    fragments: int
+    new_rows: int
+    rays: int
+    split: int
+    rays_moved: int
+    largest_form_factor: float
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """How the loop went and why it ended."""
+
+    rounds: tuple[Round, ...]
+    ended: str
+
+    def as_report(self) -> list[dict[str, float]]:
+        """The rounds as JSON takes them."""
+        return [asdict(entry) for entry in self.rounds]
+
+
+Seeds = Callable[[], Ints]
+"""Gives the elements that must be traced whether a ray meets them or not, for the leaves as they are."""
+
+
+def trace_all(transport: Transport, seeds: Seeds, report: Callable[[float], None]) -> int:
+    """Trace every seed, then every element that rays met, until none is missing; returns the rows added."""
+    before = len(transport.element_of_row)
+    wanted = seeds()
+    wanted = wanted[~transport.has_row()[wanted]]
+    while len(wanted):
+        transport.trace(wanted, np.zeros(len(wanted), dtype=np.int64), report)
+        wanted = transport.met_but_untraced()
+    return len(transport.element_of_row) - before
+
+
+def refine(
+    transport: Transport,
+    seeds: Seeds,
+    threshold: float,
+    smallest: float,
+    most_leaves: int,
+    report: Callable[[float], None] = lambda share: None,
+) -> Refinement:
+    """Split fragments by the form factors to them until all are small or weakly coupled.
+
+    A fragment is split when it receives more than `threshold` of the energy that leaves some element, and its size is
+    m = 2n or more. Fragments that are not split keep their rays; rays that met a split one move to the right child.
+
+    Parameters
+    ----------
+    smallest : float
+        The minimum size n, scene units.
+    most_leaves : int
+        Leaves that memory allows.
+    """
+    tree, rounds = transport.tree, []
+    while True:
+        fragments, rays_before = len(tree.leaves()), transport.rays.rays
+        rows = trace_all(transport, seeds, report)
+        flagged, largest, more, blocked = _flagged(transport, threshold, smallest, report)
+        full = fragments + 3 * len(flagged) > most_leaves
+        if full:
+            flagged = flagged[:0]
+        moved = 0
+        if len(flagged):
+            tree.split(flagged)
+            moved = transport.follow_splits()
+        rounds.append(
+            Round(fragments, rows + more, transport.rays.rays - rays_before, len(flagged), moved, float(largest))
+        )
+        if len(flagged) == 0:
+            ended = LIMIT_MET if full else SIZE_MET if blocked else THRESHOLD_MET
+            return Refinement(tuple(rounds), ended)
+
+
+def refine_uniformly(
+    transport: Transport,
+    seeds: Seeds,
+    smallest: float,
+    most_leaves: int,
+    report: Callable[[float], None] = lambda share: None,
+) -> Refinement:
+    """Split every leaf of size m = 2n or more, down to the minimum size n, then trace."""
+    tree, rounds, ended = transport.tree, [], UNIFORM_MET
+    while True:
+        leaves = tree.leaves()
+        large = leaves[tree.sizes(leaves) >= 2.0 * smallest]
+        if len(large) == 0:
+            break
+        if len(leaves) + 3 * len(large) > most_leaves:
+            ended = LIMIT_MET
+            break
+        rounds.append(Round(len(leaves), 0, 0, len(large), 0, 0.0))
+        tree.split(large)
+    before = transport.rays.rays
+    rows = trace_all(transport, seeds, report)
+    rounds.append(Round(len(tree.leaves()), rows, transport.rays.rays - before, 0, 0, 0.0))
+    return Refinement(tuple(rounds), ended)
+
+
+def _flagged(
+    transport: Transport, threshold: float, smallest: float, report: Callable[[float], None]
+) -> tuple[Ints, float, int, bool]:
+    """Leaves to split, the largest form factor, rows added to decide, and whether some are too small to split."""
+    tree = transport.tree
+    splittable = np.zeros(len(tree), dtype=bool)
+    leaves = tree.leaves()
+    splittable[leaves] = tree.sizes(leaves) >= 2.0 * smallest
+    before = len(transport.element_of_row)
+    while True:
+        shares = transport.shares()
+        undecided = _undecided_receivers(transport, shares, splittable, threshold)
+        if len(undecided) == 0:
+            break
+        transport.trace(undecided, _next_block(transport, undecided), report)
+    more = len(transport.element_of_row) - before
+    real = shares.source != ESCAPED
+    above = real & (shares.share > threshold)
+    nodes = np.unique(shares.source[above] >> 1)
+    largest = float(shares.share[real].max(initial=0.0))
+    return nodes[splittable[nodes]], largest, more, bool(len(nodes) and not splittable[nodes].all())
+
+
+def _undecided_receivers(
+    transport: Transport, shares: Shares, splittable: NDArray[np.bool_], threshold: float
+) -> Ints:
+    """Receivers whose rays cannot tell yet whether some fragment must be split, and that may have more of them.
+
+    A pair is undecided while its form factor is within one standard error of the threshold and no other receiver has
+    decided the split of the same fragment.
+    """
+    candidates = np.flatnonzero(shares.source != ESCAPED)
+    node = shares.source[candidates] >> 1
+    candidates, node = candidates[splittable[node]], node[splittable[node]]
+    error = shares.standard_error()[candidates]
+    distance = shares.share[candidates] - threshold
+    decided = np.zeros(len(splittable), dtype=bool)
+    decided[node[distance > error]] = True
+    unsure = (np.abs(distance) <= error) & ~decided[node]
+    receivers = np.unique(shares.receiver[candidates[unsure]])
+    blocks = np.bincount(transport.element_of_row, minlength=2 * len(transport.tree))
+    return receivers[blocks[receivers] < MOST_BLOCKS]
+
+
+def _next_block(transport: Transport, elements: Ints) -> Ints:
+    return np.bincount(transport.element_of_row, minlength=2 * len(transport.tree))[elements].astype(np.int64)
+
+
+def largest_standard_error(shares: Shares) -> float:
+    """The largest standard error of any form factor."""
+    values: Floats = shares.standard_error()
+    return float(values.max(initial=0.0))

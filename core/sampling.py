@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Low-discrepancy points, decorrelated from one receiver to the next, and what they are mapped to.
+
+The sequences are additive recurrences on the generalised golden ratio (M. Roberts 2018): point i has coordinates
+frac(i * a_d) with a_d = g**-(d+1) and g the positive root of x**(dim+1) = x + 1. Each receiver shifts them by its own
+hash (Cranley & Patterson 1976), so the pattern depends on nothing but the seed and the receiver's number.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .scene import Floats, Ints
+
+
+@lru_cache
+def _steps(dimensions: int) -> tuple[float, ...]:
+    root = 2.0
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (dimensions + 1))
+    return tuple(root ** -(k + 1) for k in range(dimensions))
+
+
+def sequence(first: int, count: int, dimensions: int) -> Floats:
+    """Points `first` to `first + count - 1` of the recurrence, (count, dimensions), in [0, 1)."""
+    index = np.arange(first + 1, first + count + 1, dtype=np.float64)
+    return np.mod(index[:, None] * np.array(_steps(dimensions)), 1.0)
+
+
+def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """SplitMix64's finalizer (Steele, Lea & Flood 2014): neighbouring integers become unrelated ones."""
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return x ^ (x >> np.uint64(31))
+
+
+def hashed(keys: Ints, dimensions: int, seed: int) -> Floats:
+    """Uniform numbers in [0, 1) that depend on the key, the dimension and the seed alone, (n, dimensions)."""
+    with np.errstate(over="ignore"):
+        base = _mixed(keys.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15) * np.uint64(seed + 1))
+        lanes = np.arange(1, dimensions + 1, dtype=np.uint64) * np.uint64(0xD1342543DE82EF95)
+        mixed = _mixed(base[:, None] + lanes)
+    return (mixed >> np.uint64(11)).astype(np.float64) * 2.0**-53
+
+
+def shifted(points: Floats, shifts: Floats) -> Floats:
+    """Points (r, d) shifted for each of n receivers by (n, d), wrapped into [0, 1): (n, r, d)."""
+    moved = points[None, :, :] + shifts[:, None, :]
+    moved -= moved >= 1.0
+    return moved
+
+
+def triangle_weights(square: Floats) -> Floats:
+    """Uniform barycentric weights of corners 1 and 2 from points of the unit square, folded along its diagonal."""
+    return np.where(square.sum(axis=-1, keepdims=True) > 1.0, 1.0 - square, square)
+
+
+def cosine_directions(square: Floats, normals: Floats) -> Floats:
+    """Directions with density cos / pi about each normal: (n, r, 2) and (n, 3) give (n, r, 3).
+
+    The frame is that of Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+    """
+    radius = np.sqrt(square[..., 0])
+    angle = square[..., 1] * (2.0 * np.pi)
+    x, y = radius * np.cos(angle), radius * np.sin(angle)
+    z = np.sqrt(np.maximum(0.0, 1.0 - square[..., 0]))
+    nx, ny, nz = normals[:, 0], normals[:, 1], normals[:, 2]
+    sign = np.where(nz >= 0.0, 1.0, -1.0)
+    a = -1.0 / (sign + nz)
+    b = nx * ny * a
+    tangent = np.stack([1.0 + sign * nx * nx * a, sign * b, -sign * nx], axis=-1)
+    bitangent = np.stack([b, sign + ny * ny * a, -ny], axis=-1)
+    frame = np.stack([tangent, bitangent, normals], axis=1)
+    return np.stack([x, y, z], axis=-1) @ frame

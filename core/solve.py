@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The energy balance: radiosity from the form factors of the rows, for three channels at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .scene import Floats, Ints
+
+RESIDUAL = 1e-6
+"""Relative residual to which the balance is solved, far below the noise of the form factors."""
+
+RESTART = 24
+"""Search directions kept before GMRES starts anew."""
+
+MOST_ITERATIONS = 240
+
+
+@dataclass(frozen=True, eq=False)
+class Exchange:
+    """Form factors between m elements, one entry for each pair that exchanges any.
+
+    Attributes
+    ----------
+    receiver, source : (p,) int
+        Elements of each pair, 0 to m - 1.
+    factor : (p,) float
+        Form factor from the receiver to the source.
+    """
+
+    receiver: Ints
+    source: Ints
+    factor: Floats
+
+    def apply(self, values: Floats) -> Floats:
+        """Sum over the sources of form factor times value, (m, c)."""
+        return np.stack(
+            [np.bincount(self.receiver, self.factor * column[self.source], minlength=len(column)) for column in values.T],
+            axis=1,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The solved balance and how it ended.
+
+    Attributes
+    ----------
+    reflected : (m, 3) float, W m^-2 sr^-1
+        Reflected radiance of each element.
+    incident : (m, 3) float, W m^-2 sr^-1
+        Irradiance over pi of each element.
+    """
+
+    reflected: Floats
+    incident: Floats
+    iterations: int
+    residual: float
+    converged: bool
+
+
+def solve_balance(exchange: Exchange, reflectance: Floats, direct: Floats, areas: Floats) -> Solution:
+    """Solve L = rho (E_direct / pi + F L) for the reflected radiance L of m elements.
+
+    By restarted GMRES (Saad & Schultz 1986) in the area-weighted inner product: many bounces cost few iterations, as
+    the interreflections of a room have one slow mode.
+
+    Parameters
+    ----------
+    exchange : Exchange
+    reflectance : (m, 3) float
+    direct : (m, 3) float, W m^-2 sr^-1
+        Irradiance over pi that is not reflected radiance of an element: emitters, world.
+    areas : (m,) float
+    """
+    source = reflectance * direct
+    weight = areas[:, None] / areas.sum()
+
+    def balance(radiance: Floats) -> Floats:
+        return radiance - reflectance * exchange.apply(radiance)
+
+    reflected, iterations, residual = gmres(balance, source, weight)
+    reflected = np.maximum(reflected, 0.0)
+    incident = direct + exchange.apply(reflected)
+    return Solution(reflected, incident, iterations, residual, residual <= RESIDUAL)
+
+
+def gmres(apply: Callable[[Floats], Floats], source: Floats, weight: Floats) -> tuple[Floats, int, float]:
+    """Solve apply(x) = source to `RESIDUAL`; returns x, the iterations and the relative residual reached."""
+
+    def dot(a: Floats, b: Floats) -> float:
+        return float((weight * a * b).sum())
+
+    scale = np.sqrt(dot(source, source))
+    x = source.copy()
+    if scale == 0.0:
+        return x, 0, 0.0
+    iterations = 0
+    while True:
+        remainder = source - apply(x)
+        norm = np.sqrt(dot(remainder, remainder))
+        if norm <= RESIDUAL * scale or iterations >= MOST_ITERATIONS:
+            return x, iterations, float(norm / scale)
+        basis = [remainder / norm]
+        upper = np.zeros((RESTART + 1, RESTART))
+        for k in range(RESTART):
+            vector = apply(basis[k])
+            for i, direction in enumerate(basis):
+                upper[i, k] = dot(vector, direction)
+                vector = vector - upper[i, k] * direction
+            upper[k + 1, k] = np.sqrt(dot(vector, vector))
+            iterations += 1
+            target = np.zeros(k + 2)
+            target[0] = norm
+            step, *_ = np.linalg.lstsq(upper[: k + 2, : k + 1], target, rcond=None)
+            missed = np.linalg.norm(upper[: k + 2, : k + 1] @ step - target)
+            if missed <= 0.5 * RESIDUAL * scale or upper[k + 1, k] <= 1e-14 * norm or iterations >= MOST_ITERATIONS:
+                break
+            basis.append(vector / upper[k + 1, k])
+        x = x + sum((s * direction for s, direction in zip(step, basis, strict=False)), np.zeros_like(x))

@@ -1,0 +1,153 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""All meshes of a scene joined into one set of sound triangles, with what is wrong with them said."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import NothingToBakeError
+from .geometry import normalized, triangle_cross, triangle_shells, welded
+from .scene import Floats, Ints, Scene, SurfaceMesh
+
+SMALLEST_AREA = 1e-14
+"""Triangles with less than this share of the squared extent of the scene have no area that float32 rays could meet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """Every triangle with an area, of every mesh, in world coordinates.
+
+    Attributes
+    ----------
+    points : (v, 3) float, scene units
+        The vertices of all meshes, one mesh after the other.
+    place_of_point : (v,) int
+        The lowest vertex of the same mesh at the same place: edges are compared by places.
+    triangles : (t, 3) int
+    normals : (t, 3) float, unit
+    areas : (t,) float
+    corner_normals : (t, 3, 3) float, unit
+    reflectance, emission : (t, 3) float
+    mesh_of_triangle, input_triangle : (t,) int
+        The mesh, and the triangle's number in it.
+    first_point_of_mesh : (meshes + 1,) int
+    shell_of_triangle : (t,) int
+        Connected pieces, over all meshes.
+    closed : (shells,) bool
+        Whether the shell has an inside.
+    baked : (t,) bool
+    extent : float
+        Largest edge of the bounding box.
+    world : (3,) float
+    warnings : tuple of str
+    """
+
+    points: Floats
+    place_of_point: Ints
+    triangles: Ints
+    normals: Floats
+    areas: Floats
+    corner_normals: Floats
+    reflectance: Floats
+    emission: Floats
+    mesh_of_triangle: Ints
+    input_triangle: Ints
+    first_point_of_mesh: Ints
+    shell_of_triangle: Ints
+    closed: NDArray[np.bool_]
+    baked: NDArray[np.bool_]
+    extent: float
+    world: Floats
+    warnings: tuple[str, ...]
+
+
+def join(scene: Scene) -> Surfaces:
+    """Join the meshes of a scene, leaving out triangles that are not finite or have no area.
+
+    Raises
+    ------
+    NothingToBakeError
+        When no triangle of a mesh that is to be baked is left.
+    """
+    warnings: list[str] = []
+    extent = _extent(scene.meshes)
+    kept = [_sound(mesh, extent, warnings) for mesh in scene.meshes]
+    if not any(mesh.baked and len(keep) for mesh, keep in zip(scene.meshes, kept, strict=True)):
+        raise NothingToBakeError("None of the meshes to bake has a face with an area; select a mesh that has faces")
+    first_point = np.concatenate([[0], np.cumsum([len(mesh.vertices) for mesh in scene.meshes])]).astype(np.int64)
+    points = np.concatenate([np.nan_to_num(m.vertices, nan=0.0, posinf=0.0, neginf=0.0) for m in scene.meshes])
+    places = np.concatenate([welded(_finite(m.vertices)) + o for m, o in zip(scene.meshes, first_point, strict=False)])
+
+    def gather(values: list[NDArray[np.float64]]) -> Floats:
+        return np.concatenate([v[k] for v, k in zip(values, kept, strict=True)]).astype(np.float64)
+
+    triangles = np.concatenate([m.triangles[k] + o for m, k, o in zip(scene.meshes, kept, first_point, strict=False)])
+    cross = triangle_cross(points, triangles)
+    shell, closed = triangle_shells(places[triangles], len(points))
+    counts = [len(keep) for keep in kept]
+    mesh_of_triangle = np.repeat(np.arange(len(counts)), counts)
+    flags = np.array([mesh.baked for mesh in scene.meshes])
+    normals = normalized(cross)
+    return Surfaces(
+        points=points,
+        place_of_point=places,
+        triangles=triangles,
+        normals=normals,
+        areas=np.linalg.norm(cross, axis=1) / 2.0,
+        corner_normals=_shading_normals(gather([m.corner_normals for m in scene.meshes]), normals),
+        reflectance=_reflectance(scene.meshes, gather([m.reflectance for m in scene.meshes]), mesh_of_triangle, warnings),
+        emission=np.maximum(np.nan_to_num(gather([m.emission for m in scene.meshes]), posinf=0.0), 0.0),
+        mesh_of_triangle=mesh_of_triangle,
+        input_triangle=np.concatenate(kept),
+        first_point_of_mesh=first_point,
+        shell_of_triangle=shell,
+        closed=closed,
+        baked=flags[mesh_of_triangle],
+        extent=extent,
+        world=np.maximum(np.nan_to_num(np.asarray(scene.world, dtype=np.float64), posinf=0.0), 0.0),
+        warnings=tuple(warnings),
+    )
+
+
+def _finite(vertices: Floats) -> Floats:
+    return np.nan_to_num(vertices, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def _extent(meshes: tuple[SurfaceMesh, ...]) -> float:
+    used = [m.vertices[m.triangles.ravel()] for m in meshes if len(m.triangles)]
+    finite = np.concatenate([p[np.isfinite(p).all(axis=1)] for p in used] or [np.zeros((0, 3))])
+    return float(np.ptp(finite, axis=0).max()) if len(finite) else 0.0
+
+
+def _sound(mesh: SurfaceMesh, extent: float, warnings: list[str]) -> Ints:
+    """Triangles of a mesh that are finite and have an area; the others are named in a warning."""
+    corners = mesh.vertices[mesh.triangles]
+    finite = np.isfinite(corners).all(axis=(1, 2))
+    area = np.zeros(len(corners))
+    sound = corners[finite]
+    area[finite] = np.linalg.norm(np.cross(sound[:, 1] - sound[:, 0], sound[:, 2] - sound[:, 0]), axis=1) / 2.0
+    flat = finite & (area <= SMALLEST_AREA * extent * extent)
+    if not finite.all():
+        warnings.append(f"{mesh.name}: {int((~finite).sum())} triangles with coordinates that are not numbers left out")
+    if flat.any():
+        warnings.append(f"{mesh.name}: {int(flat.sum())} triangles without area left out")
+    return np.flatnonzero(finite & ~flat)
+
+
+def _shading_normals(corner_normals: Floats, normals: Floats) -> Floats:
+    """Unit corner normals on the triangle's front; the triangle's own where they are missing or point away."""
+    unit = normalized(np.nan_to_num(corner_normals))
+    wrong = np.einsum("tkx,tx->tk", unit, normals) <= 0.0
+    return np.where(wrong[..., None], normals[:, None, :], unit)
+
+
+def _reflectance(meshes: tuple[SurfaceMesh, ...], values: Floats, mesh_of_triangle: Ints, warnings: list[str]) -> Floats:
+    values = np.nan_to_num(values, posinf=1.0)
+    outside = ((values < 0.0) | (values > 1.0)).any(axis=1)
+    for mesh in np.unique(mesh_of_triangle[outside]):
+        warnings.append(f"{meshes[mesh].name}: a base colour outside 0 to 1 was limited to it")
+    return np.clip(values, 0.0, 1.0)
