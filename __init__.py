@@ -1,0 +1,22 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Radiosity Bake: an extension that bakes the light of a scene into vertex colours.
+
+Nothing here imports bpy before `register`, so that `core` can be used and tested without Blender.
+"""
+
+
+def register() -> None:
+    """Add the settings, operators, panels and the command to Blender."""
+    from . import operators, ui
+
+    operators.register()
+    ui.register()
+
+
+def unregister() -> None:
+    """Take everything back out, in reverse order."""
+    from . import operators, ui
+
+    ui.unregister()
+    operators.unregister()

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Blender side: settings, extraction, the bake in its thread, storing, restoring and the command."""
+
+import bpy
+
+from . import bake, command, record, restore, settings
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        settings.RadiositySettings,
+        record.RememberedSlot,
+        record.RememberedAttribute,
+        record.ObjectRecord,
+        bake.RADIOSITY_OT_bake,
+        bake.RADIOSITY_OT_cancel,
+        restore.RADIOSITY_OT_restore,
+    )
+)
+
+
+def register() -> None:
+    """Register the classes, then the properties and the command that use them."""
+    _register_classes()
+    bpy.types.Scene.radiosity = bpy.props.PointerProperty(type=settings.RadiositySettings)
+    bpy.types.Object.radiosity = bpy.props.PointerProperty(type=record.ObjectRecord)
+    command.register()
+
+
+def unregister() -> None:
+    """Unregister in reverse; a bake that still runs is asked to stop."""
+    bake.stop_running_job()
+    command.unregister()
+    del bpy.types.Object.radiosity
+    del bpy.types.Scene.radiosity
+    _unregister_classes()

@@ -1,0 +1,240 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The bake: one operator with two doors, and the use case behind both."""
+
+import json
+import time
+from collections.abc import Iterable
+from typing import Any, ClassVar
+
+import bpy
+
+from ..core.errors import BakeError, Cancelled
+from ..core.progress import Progress, ProgressCallback, no_progress
+from ..core.result import BakeResult
+from ..core.settings import BakeSettings
+from .display import show_in_viewport
+from .extraction import Extraction, extract
+from .job import BakeJob, Failed, Finished
+from .record import source_of
+from .settings import bake_settings
+from .store import scene_of, store
+
+_POLL_SECONDS = 0.1
+_PATIENCE_SECONDS = 0.3
+"""How long Esc waits for the thread. It stops at its next message anyway, and what it finds then is thrown away."""
+
+
+def bake_objects(
+    context: bpy.types.Context,
+    objects: Iterable[bpy.types.Object],
+    settings: BakeSettings,
+    progress: ProgressCallback = no_progress,
+) -> dict[str, Any]:
+    """Bake `objects` from beginning to end, and return the report.
+
+    Raises
+    ------
+    BakeError
+        With a sentence for the user; nothing was changed.
+    Cancelled
+        When `progress` raised it; nothing was changed.
+    """
+    began = time.perf_counter()
+    extraction = extract(context, objects)
+    read = time.perf_counter() - began
+    result = _core_bake()(extraction.scene, settings, progress)
+    return finish(extraction, result, settings, read)
+
+
+def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, read: float) -> dict[str, Any]:
+    """Store `result`, then write and return the report; `read` is the seconds that the extraction took."""
+    began = time.perf_counter()
+    scene = scene_of(extraction)
+    objects, cautions = store(scene, extraction, result, settings.output)
+    seconds = {"extract": read, **result.report.get("seconds", {}), "store": time.perf_counter() - began}
+    seconds["total"] = seconds.get("total", 0.0) + seconds["extract"] + seconds["store"]
+    report = {
+        **result.report,
+        "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
+        "objects": [obj.name for obj in objects],
+        "warnings": [*extraction.warnings, *result.report.get("warnings", ()), *cautions],
+    }
+    scene.radiosity.report = json.dumps(report)
+    return report
+
+
+def _core_bake():
+    from ..core.bake import bake
+
+    return bake
+
+
+def ray_library_problem() -> str | None:
+    """Return why no rays can be traced on this computer, or None."""
+    from ..core import visibility
+
+    return visibility.ray_library_problem()
+
+
+def reason_not_to_bake(context: bpy.types.Context) -> str | None:
+    """Return a sentence that says why the bake button is grey, or None when it is not."""
+    if RADIOSITY_OT_bake.job is not None:
+        return "A bake is running; wait for it or press Esc"
+    problem = ray_library_problem()
+    if problem is not None:
+        return problem
+    if context.mode != "OBJECT":
+        return "Leave edit mode to bake" if "EDIT" in context.mode else "Switch to object mode to bake"
+    if context.scene.library is not None:
+        return "This scene is linked from another file; make it local to bake"
+    meshes = [obj for obj in context.selected_objects if source_of(obj).type == "MESH"]
+    if not meshes:
+        return "Select the meshes to bake"
+    if all(source_of(obj).library is not None for obj in meshes):
+        return "The selected meshes are linked from another file; make them local to bake"
+    return None
+
+
+def counted(number: int, noun: str) -> str:
+    """Return "1 object" or "3 objects"."""
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+def stop_running_job() -> None:
+    """Ask a running bake to stop, if there is one."""
+    if RADIOSITY_OT_bake.job is not None:
+        RADIOSITY_OT_bake.job.cancel()
+
+
+class RADIOSITY_OT_bake(bpy.types.Operator):
+    """Compute how light spreads in the scene and store it in the colours of the selected meshes."""
+
+    bl_idname = "radiosity.bake"
+    bl_label = "Bake Radiosity"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
+
+    job: ClassVar[BakeJob | None] = None
+    """The bake that runs in the window; there is at most one, and the panel shows its progress."""
+
+    @classmethod
+    def poll(cls, context):
+        """Return whether the selection can be baked; the tooltip says why not."""
+        reason = reason_not_to_bake(context)
+        if reason is not None:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context):
+        """Bake to the end: the door for scripts."""
+        try:
+            report = bake_objects(context, context.selected_objects, bake_settings(context.scene.radiosity))
+        except (BakeError, Cancelled) as error:
+            return self._gave_up(error)
+        return self._done(report)
+
+    def invoke(self, context, _event):
+        """Start the bake in its thread and watch it: the door for people."""
+        began = time.perf_counter()
+        try:
+            self._settings = bake_settings(context.scene.radiosity)
+            self._extraction = extract(context, context.selected_objects)
+        except BakeError as error:
+            return self._gave_up(error)
+        self._read = time.perf_counter() - began
+        job = RADIOSITY_OT_bake.job = BakeJob(_core_bake(), self._extraction.scene, self._settings)
+        window_manager = context.window_manager
+        self._timer = window_manager.event_timer_add(_POLL_SECONDS, window=context.window)
+        window_manager.progress_begin(0, 100)
+        window_manager.modal_handler_add(self)
+        job.start()
+        self._show(context, job.latest)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """Show how far the bake is; store it when it is done."""
+        job = RADIOSITY_OT_bake.job
+        if event.type == "ESC" and event.value == "PRESS":
+            job.cancel()
+        if job.cancelled:
+            job.wait(_PATIENCE_SECONDS)
+            self._leave(context)
+            return self._gave_up(Cancelled())
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        messages = job.messages()
+        if messages and not isinstance(messages[-1], Progress):
+            self._leave(context)
+            return self._end(context, messages[-1])
+        if messages:
+            self._show(context, messages[-1])
+        return {"PASS_THROUGH"}
+
+    def cancel(self, context):
+        """Stop the bake when Blender ends the operator itself, as it does when another file is opened."""
+        stop_running_job()
+        self._leave(context)
+
+    def _end(self, context, message: Finished | Failed):
+        try:
+            if isinstance(message, Failed):
+                raise message.error
+            report = finish(self._extraction, message.result, self._settings, self._read)
+        except (BakeError, Cancelled) as error:
+            return self._gave_up(error)
+        show_in_viewport(context)
+        return self._done(report)
+
+    def _done(self, report):
+        warnings = len(report["warnings"])
+        sentence = f"Baked {counted(len(report['objects']), 'object')} in {report['seconds']['total']:.1f} s"
+        if warnings:
+            sentence += f", with {counted(warnings, 'warning')}: see the Radiosity panel"
+        self.report({"WARNING" if warnings else "INFO"}, sentence)
+        return {"FINISHED"}
+
+    def _gave_up(self, error: BakeError | Cancelled):
+        if isinstance(error, Cancelled):
+            self.report({"INFO"}, "Bake cancelled; nothing was changed")
+        else:
+            self.report({"ERROR"}, str(error))
+        return {"CANCELLED"}
+
+    def _show(self, context, progress: Progress) -> None:
+        detail = f" ({progress.detail})" if progress.detail else ""
+        context.workspace.status_text_set(f"Radiosity  {progress.share:.0%}  {progress.stage}{detail}  |  Esc: Cancel")
+        context.window_manager.progress_update(100.0 * progress.share)
+        _redraw_panels(context)
+
+    def _leave(self, context) -> None:
+        RADIOSITY_OT_bake.job = None
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        _redraw_panels(context)
+
+
+class RADIOSITY_OT_cancel(bpy.types.Operator):
+    """Stop the bake that is running; nothing is changed (Esc does the same)."""
+
+    bl_idname = "radiosity.cancel"
+    bl_label = "Cancel Bake"
+    bl_options = {"INTERNAL"}  # noqa: RUF012 - Blender reads it from the class
+
+    @classmethod
+    def poll(cls, _context):
+        """Return whether a bake is running."""
+        return RADIOSITY_OT_bake.job is not None
+
+    def execute(self, _context):
+        """Ask the running bake to stop."""
+        stop_running_job()
+        return {"FINISHED"}
+
+
+def _redraw_panels(context: bpy.types.Context) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

@@ -1,0 +1,236 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The shell command: bake a .blend file without opening a window."""
+
+import argparse
+import atexit
+import json
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+from ..core.errors import BakeError, Cancelled
+from ..core.progress import Progress
+from ..core.settings import METHODS, OUTPUTS, QUALITIES, BakeSettings
+from .bake import bake_objects, counted, ray_library_problem
+from .files import check_writable, replaced
+from .participants import rendered_objects
+from .settings import bake_settings
+
+NAME = "radiosity_bake"
+
+_DESCRIPTION = """\
+Bake the light of a .blend file into vertex colours.
+
+Blender reads the file first, then this command bakes it and writes the result to another file:
+
+  blender --background room.blend --command radiosity_bake --quality GOOD --output room_baked.blend
+
+Settings that are not given are those saved in the file (panel "Radiosity" in the 3D viewport's sidebar).
+"""
+_EPILOG = "Exit code 0: both files were written. Exit code 1: nothing was written, and a sentence on stderr says why."
+_LINE_EVERY_SECONDS = 1.0
+
+_handles = []
+"""The command's handle between registering and unregistering, which Blender wants back."""
+
+
+def register() -> None:
+    """Make `blender --command radiosity_bake` known."""
+    _handles.append(bpy.utils.register_cli_command(NAME, main))
+    # A command still registered when Python ends crashes the bpy module, whose user may not think of unregistering.
+    atexit.register(unregister)
+
+
+def unregister() -> None:
+    """Withdraw the command."""
+    atexit.unregister(unregister)
+    while _handles:
+        bpy.utils.unregister_cli_command(_handles.pop())
+
+
+class CommandError(BakeError):
+    """The command line asks for something that cannot be done."""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str):
+        raise CommandError(f"{message} (--help explains the options)")
+
+
+def main(argv: list[str], blend_path: str | None = None) -> int:
+    """Run the command.
+
+    Parameters
+    ----------
+    argv : list of str
+        The options, without the command's name.
+    blend_path : str or None
+        The .blend file to open first; None takes the one that is open.
+
+    Returns
+    -------
+    int
+        0 when the files were written (or help was asked for), 1 with a sentence on stderr otherwise.
+    """
+    try:
+        options = _parser().parse_args(argv)
+        if blend_path is not None:
+            _open(Path(blend_path))
+        _run(options)
+    except SystemExit:
+        return 0
+    except (BakeError, Cancelled) as error:
+        print(f"{NAME}: {error or 'cancelled; nothing was written'}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(f"{NAME}: cancelled; nothing was written", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog=NAME,
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    files = parser.add_argument_group("files")
+    files.add_argument("--output", metavar="FILE", help="the .blend to write; relative to the current folder")
+    files.add_argument("--report", metavar="FILE", help="a JSON file for counts, times, errors and warnings")
+    files.add_argument("--overwrite", action="store_true", help="allow --output to be the file that was read")
+    what = parser.add_argument_group("what is baked")
+    what.add_argument("--object", metavar="NAME", action="append", help="bake this mesh only; may be given repeatedly")
+    what.add_argument("--bake-to", choices=OUTPUTS, help="new refined meshes, or the meshes as they are")
+    how = parser.add_argument_group("how it is baked")
+    how.add_argument("--threshold", type=float, help="share of another surface's light above which one is split")
+    how.add_argument("--minimum-size", type=float, metavar="LENGTH", help="no edges shorter than this; 0: automatic")
+    how.add_argument("--method", choices=METHODS, help="split where the light changes, or everywhere")
+    how.add_argument("--quality", choices=QUALITIES, help="how many rays are traced")
+    how.add_argument("--seed", type=int, help="pattern of the remaining noise")
+    how.add_argument("--threads", type=int, help="cores that trace rays; 0: all")
+    how.add_argument("--memory-limit", type=int, metavar="MIB", help="memory that the rays may take")
+    return parser
+
+
+def _open(path: Path) -> None:
+    if not path.is_file():
+        raise CommandError(f"There is no file {path}")
+    try:
+        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()))
+    except RuntimeError as error:
+        raise CommandError(f"{path} could not be read: {_sentence(error)}") from error
+
+
+def _run(options: argparse.Namespace) -> None:
+    """Check everything that can be checked, bake, then write the files."""
+    problem = ray_library_problem()
+    if problem is not None:
+        raise CommandError(problem)
+    context = bpy.context
+    settings = _settings(options, context.scene)
+    objects = _objects(options.object, context)
+    output, report_path = _paths(options)
+    report = bake_objects(context, objects, settings, _ProgressLines())
+    _save(output)
+    if report_path is not None:
+        with replaced(report_path) as temporary:
+            temporary.write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    _summarise(report, output)
+
+
+def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettings:
+    saved = bake_settings(scene.radiosity)
+    given = {
+        "threshold": options.threshold,
+        "minimum_size": options.minimum_size,
+        "method": options.method,
+        "quality": options.quality,
+        "output": options.bake_to,
+        "seed": options.seed,
+        "threads": options.threads,
+        "memory_limit": options.memory_limit,
+    }
+    return BakeSettings(**{name: getattr(saved, name) if value is None else value for name, value in given.items()})
+
+
+def _objects(names: list[str] | None, context: bpy.types.Context) -> list[bpy.types.Object]:
+    if names is None:
+        meshes = [obj for obj in rendered_objects(context.view_layer) if obj.type == "MESH"]
+        if not meshes:
+            raise CommandError("The scene has no mesh that renders")
+        return sorted(meshes, key=lambda obj: obj.name_full)
+    objects = []
+    for name in names:
+        obj = context.scene.objects.get(name)
+        if obj is None:
+            raise CommandError(f'There is no object "{name}" in the scene "{context.scene.name}"')
+        if obj.type != "MESH":
+            raise CommandError(f'"{name}" is not a mesh and cannot be baked')
+        objects.append(obj)
+    return objects
+
+
+def _paths(options: argparse.Namespace) -> tuple[Path, Path | None]:
+    source = Path(bpy.data.filepath).resolve() if bpy.data.filepath else None
+    if options.output is None and not options.overwrite:
+        raise CommandError("Say where to write the result with --output FILE, or --overwrite the file that was read")
+    if options.output is None and source is None:
+        raise CommandError("No .blend file was read that could be overwritten; give --output FILE")
+    output = source if options.output is None else Path(options.output).resolve()
+    if output == source and not options.overwrite:
+        raise CommandError(f"{output} is the file that was read; give another --output, or --overwrite it")
+    if output.suffix != ".blend":
+        raise CommandError(f"{output} does not end in .blend")
+    check_writable(output, "The output")
+    if options.report is None:
+        return output, None
+    report = Path(options.report).resolve()
+    if report in (output, source):
+        raise CommandError(f"The report {report} would replace a .blend file; give another name")
+    check_writable(report, "The report")
+    return output, report
+
+
+def _save(output: Path) -> None:
+    with replaced(output) as temporary:
+        try:
+            bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
+        except RuntimeError as error:
+            raise CommandError(f"{output} could not be written: {_sentence(error)}") from error
+
+
+def _sentence(error: RuntimeError) -> str:
+    """Return what an operator reported, without Blender's prefix."""
+    return str(error).strip().removeprefix("Error: ")
+
+
+class _ProgressLines:
+    """Prints a line when a stage begins, and once a second while it lasts."""
+
+    def __init__(self) -> None:
+        self._stage = ""
+        self._last = 0.0
+
+    def __call__(self, message: Progress) -> None:
+        now = time.monotonic()
+        if message.stage == self._stage and now - self._last < _LINE_EVERY_SECONDS:
+            return
+        self._stage, self._last = message.stage, now
+        detail = f": {message.detail}" if message.detail else ""
+        print(f"{message.share:4.0%}  {message.stage}{detail}", flush=True)
+
+
+def _summarise(report: dict, output: Path) -> None:
+    for warning in report["warnings"]:
+        print(f"Warning: {warning}")
+    print(
+        f"Baked {counted(len(report['objects']), 'object')} in {report['seconds']['total']:.1f} s: "
+        f"{report.get('patches', 0):,} patches, {report.get('vertices', 0):,} vertices, "
+        f"{report.get('rays', 0):,} rays. Wrote {output}",
+        flush=True,
+    )

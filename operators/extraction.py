@@ -1,0 +1,273 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene as `core` takes it: everything that renders, as plain arrays in world space, copied out of Blender."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..core.errors import NothingToBakeError
+from ..core.scene import Floats, Scene, SurfaceMesh
+from .display import is_display
+from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
+from .materials import Surface, material_surface, world_radiance
+from .participants import Participants, shown_as_rendered
+from .record import BAKED_IN_PLACE, source_of
+
+_UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """An object that is baked: how to find it again, and what its baked values have to be fitted to.
+
+    Attributes
+    ----------
+    uid : int
+        `session_uid` of the object, which survives renaming and undo.
+    name : str
+    mesh : int
+        Index into `Scene.meshes`.
+    matrix : (4, 4) float
+        From the object's space to the world's, when it was read.
+    flipped : bool
+        Whether the triangles were turned over, because the matrix mirrors.
+    local : LocalMesh
+        The evaluated mesh; its triangles and corners in the order (and winding) of `Scene.meshes[mesh]`.
+    fingerprint : bytes
+        Of the object's own mesh, to notice that it was edited during the bake.
+    same_corners : bool
+        Whether the evaluated mesh has the very face corners of the object's own mesh.
+    """
+
+    uid: int
+    name: str
+    mesh: int
+    matrix: Floats
+    flipped: bool
+    local: LocalMesh
+    fingerprint: bytes
+    same_corners: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Extraction:
+    """What was read from Blender: the scene for `core`, where to write its values, and what was skipped.
+
+    Attributes
+    ----------
+    scene : Scene
+    targets : tuple of Target
+    warnings : tuple of str
+    scene_uid : int
+        `session_uid` of the Blender scene.
+    view_layer : str
+        Name of the view layer that was read.
+    """
+
+    scene: Scene
+    targets: tuple[Target, ...]
+    warnings: tuple[str, ...]
+    scene_uid: int
+    view_layer: str
+
+
+def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> Extraction:
+    """Read everything that renders, with `objects` marked to be baked.
+
+    A refined object from an earlier bake means its original. Nothing of the file is changed.
+
+    Raises
+    ------
+    NothingToBakeError
+        When none of `objects` is a mesh with faces that renders.
+    """
+    warnings: list[str] = []
+    wanted = _wanted(objects, warnings)
+    with shown_as_rendered(context) as (depsgraph, participants):
+        reader = _Reader(depsgraph, participants, set(wanted))
+        reader.read()
+    targets = tuple(reader.targets)
+    warnings += _missing(wanted, reader)
+    if not targets:
+        raise NothingToBakeError(warnings[0] if len(warnings) == 1 else _nothing(wanted, warnings))
+    world, notes = world_radiance(context.scene.world)
+    warnings += reader.warnings()
+    warnings += [f'World "{context.scene.world.name}": {note}' for note in notes]
+    return Extraction(
+        Scene(tuple(reader.meshes), world),
+        targets,
+        tuple(warnings),
+        context.scene.session_uid,
+        context.view_layer.name,
+    )
+
+
+def _wanted(objects: Iterable[bpy.types.Object], warnings: list[str]) -> list[bpy.types.Object]:
+    wanted = []
+    for obj in dict.fromkeys(source_of(obj) for obj in objects):
+        if obj.type != "MESH":
+            warnings.append(f'"{obj.name}" was skipped: it is not a mesh')
+        elif obj.library is not None:
+            warnings.append(f'"{obj.name}" was skipped: it is linked from another file; make it local to bake it')
+        else:
+            wanted.append(obj)
+    return wanted
+
+
+def _missing(wanted: list[bpy.types.Object], reader: "_Reader") -> list[str]:
+    found = {target.uid for target in reader.targets}
+    sentences = []
+    for obj in wanted:
+        if obj.session_uid in found:
+            continue
+        if obj in reader.without_faces:
+            sentences.append(f'"{obj.name}" was skipped: its mesh has no faces')
+        else:
+            sentences.append(f'"{obj.name}" was skipped: it is not shown in renders')
+    return sentences
+
+
+def _nothing(wanted: list[bpy.types.Object], warnings: list[str]) -> str:
+    if not warnings:
+        return "Select the meshes to bake"
+    return f"Nothing to bake: {'; '.join(warnings)}"
+
+
+class _Reader:
+    """Goes once over everything that a dependency graph shows."""
+
+    def __init__(
+        self, depsgraph: bpy.types.Depsgraph, participants: Participants, wanted: set[bpy.types.Object]
+    ) -> None:
+        self._depsgraph = depsgraph
+        self._participants = participants
+        self._wanted = wanted
+        self._local_meshes: dict[int, LocalMesh | None] = {}
+        self._surfaces: dict[Any, Surface] = {}
+        self._users_of_note: dict[tuple[str, str], dict[str, None]] = {}
+        self._left_out: dict[str, dict[str, None]] = {}
+        self.meshes: list[SurfaceMesh] = []
+        self.targets: list[Target] = []
+        self.without_faces: set[bpy.types.Object] = set()
+
+    def read(self) -> None:
+        """Fill `meshes` and `targets`, in an order that does not depend on how the graph was built."""
+        entries = sorted(self._entries(), key=lambda entry: entry[0])
+        for _, original, baked, local, materials, matrix in entries:
+            self._add(original, baked, local, materials, matrix)
+
+    def warnings(self) -> list[str]:
+        """Return a sentence for everything that was left out or guessed."""
+        sentences = [
+            f'Material "{material}" of {_names(users)}: {note}'
+            for (material, note), users in self._users_of_note.items()
+        ]
+        for kind, names in self._left_out.items():
+            if kind == "LIGHT":
+                why = "lamps are not supported yet; give a mesh an emission instead"
+            else:
+                why = "only objects that render as meshes take part"
+            sentences.append(f"{_names(names, most=None)} left out: {why}")
+        return sentences
+
+    def _entries(self) -> Iterator[tuple[Any, ...]]:
+        for instance in self._depsgraph.object_instances:
+            if not self._participants.include(instance):
+                continue
+            obj = instance.object
+            original = obj.original
+            if obj.type in _UNSUPPORTED or obj.type == "LIGHT":
+                self._left_out.setdefault(obj.type, {})[original.name] = None
+            if obj.type != "MESH":
+                continue
+            local = self._local_mesh(obj)
+            baked = not instance.is_instance and original in self._wanted
+            if local is None:
+                if baked:
+                    self.without_faces.add(original)
+                continue
+            parent = instance.parent.original.name_full if instance.is_instance else ""
+            order = (original.name_full, parent, tuple(instance.persistent_id) if instance.is_instance else ())
+            matrix = np.array(instance.matrix_world, dtype=np.float64)
+            yield order, original, baked, local, _slot_materials(obj, local), matrix
+
+    def _local_mesh(self, obj: bpy.types.Object) -> LocalMesh | None:
+        key = obj.data.as_pointer()
+        if key not in self._local_meshes:
+            # Not `obj.data`: with subdivision on the graphics card that is still the coarse mesh.
+            mesh = obj.to_mesh()
+            self._local_meshes[key] = local_mesh(mesh) if mesh is not None and len(mesh.polygons) else None
+            obj.to_mesh_clear()
+        return self._local_meshes[key]
+
+    def _add(self, original, baked: bool, local: LocalMesh, materials: tuple[Any, ...], matrix: Floats) -> None:
+        flipped = np.linalg.det(matrix[:3, :3]) < 0.0
+        if flipped:
+            local = turned_over(local)
+        reflectance, emission = self._optics(original.name, local, materials)
+        if baked:
+            mesh = original.data
+            corners = np.empty(len(mesh.loops), dtype=np.int32)
+            mesh.loops.foreach_get("vertex_index", corners)
+            same_corners = len(mesh.vertices) == len(local.vertices) and np.array_equal(corners, local.vertex_of_corner)
+            self.targets.append(
+                Target(
+                    uid=original.session_uid,
+                    name=original.name,
+                    mesh=len(self.meshes),
+                    matrix=matrix,
+                    flipped=bool(flipped),
+                    local=local,
+                    fingerprint=fingerprint(mesh),
+                    same_corners=bool(same_corners),
+                )
+            )
+        vertices, normals = placed(local, matrix)
+        self.meshes.append(SurfaceMesh(original.name, vertices, local.triangles, normals, reflectance, emission, baked))
+
+    def _optics(self, name: str, local: LocalMesh, materials: tuple[Any, ...]) -> tuple[Floats, Floats]:
+        # Like the renderers: a face whose slot does not exist takes the last one.
+        last = max(len(materials) - 1, 0)
+        slots, slot_of_triangle = np.unique(np.clip(local.slots, 0, last), return_inverse=True)
+        surfaces = []
+        for slot in slots:
+            material = materials[slot] if materials else None
+            surface = self._surfaces.get(material)
+            if surface is None:
+                surface = self._surfaces[material] = material_surface(material)
+            for note in surface.notes:
+                self._users_of_note.setdefault((material.name, note), {})[name] = None
+            surfaces.append(surface)
+        reflectance = np.array([surface.reflectance for surface in surfaces])
+        emission = np.array([surface.emission for surface in surfaces])
+        return reflectance[slot_of_triangle], emission[slot_of_triangle]
+
+
+def _slot_materials(obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
+    """Return the material of each index: the object's where its slot says so, else the evaluated mesh's own.
+
+    An object that was baked in place shows the display material; the ones that it remembers count.
+    """
+    materials = list(local.materials)
+    record = obj.original.radiosity
+    for index, slot in enumerate(obj.material_slots):
+        if index >= len(materials):
+            materials.append(slot.material)
+        elif slot.link == "OBJECT":
+            materials[index] = slot.material
+    if record.kind == BAKED_IN_PLACE:
+        for index, material in enumerate(materials):
+            if is_display(material):
+                materials[index] = record.slots[index].material if index < len(record.slots) else None
+    return tuple(materials)
+
+
+def _names(names: Iterable[str], most: int | None = 3) -> str:
+    """Return quoted names for a sentence, the first few of many."""
+    names = list(names)
+    shown = ", ".join(f'"{name}"' for name in names[:most])
+    return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that appear whole or not at all: written under a temporary name in their folder, then renamed."""
+
+import secrets
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ..core.errors import BakeError
+
+
+class FileError(BakeError):
+    """A file cannot be written where it was asked for."""
+
+
+def check_writable(path: Path, what: str) -> None:
+    """Try whether a file could be written at `path`, before hours are spent on its contents.
+
+    Parameters
+    ----------
+    path : Path
+    what : str
+        What the file is, to begin the sentence with.
+
+    Raises
+    ------
+    FileError
+    """
+    if path.is_dir():
+        raise FileError(f"{what} {path} is a folder; give the name of a file")
+    if not path.parent.is_dir():
+        raise FileError(f"{what} {path}: there is no folder {path.parent}")
+    if path.exists() and not path.stat().st_mode & stat.S_IWUSR:
+        raise FileError(f"{what} {path} is read-only; give another name or make it writable")
+    probe = _temporary(path)
+    try:
+        probe.touch(exist_ok=False)
+    except OSError as error:
+        raise FileError(f"{what} {path}: the folder {path.parent} cannot be written to ({error.strerror})") from error
+    finally:
+        with suppress(OSError):
+            probe.unlink()
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Lend a temporary path beside `path` that takes its name when the block ends well, and is removed otherwise."""
+    temporary = _temporary(path)
+    try:
+        yield temporary
+        temporary.replace(path)
+    except OSError as error:
+        raise FileError(f"{path} could not be written: {error.strerror or error}") from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
+
+
+def _temporary(path: Path) -> Path:
+    return path.with_name(f".{path.stem}.{secrets.token_hex(4)}.tmp{path.suffix}")

@@ -1,0 +1,115 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Baked values on the meshes that the objects have."""
+
+import bpy
+import numpy as np
+
+from ..core.result import BakedMesh
+from ..core.scene import Floats
+from . import display
+from .changes import (
+    active_attributes,
+    remember_active_attributes,
+    remember_record,
+    remove_attribute,
+    rename_attribute,
+)
+from .colours import write_colours
+from .extraction import Target
+from .journal import Journal
+from .local_mesh import local_mesh
+from .record import BAKED_IN_PLACE
+from .refined import baked_values
+from .transfer import nearest_corners
+
+
+def store_in_place(obj: bpy.types.Object, target: Target, baked: BakedMesh, journal: Journal) -> None:
+    """Write the values of `baked` on the corners of the mesh of `obj`, and show them."""
+    remember_record(obj, journal)
+    if obj.radiosity.kind != BAKED_IN_PLACE:
+        obj.radiosity.kind = BAKED_IN_PLACE
+        _own_mesh(obj, journal)
+        obj.radiosity.active_attribute, obj.radiosity.active_color, obj.radiosity.default_color = active_attributes(
+            obj.data
+        )
+    remember_active_attributes(obj.data, journal)
+    values = _values_of_corners(obj.data, target, baked)
+    _make_room(obj, values, journal)
+    write_colours(obj.data, values)
+    _show(obj, baked.radiosity_back is not None, journal)
+
+
+def _own_mesh(obj: bpy.types.Object, journal: Journal) -> None:
+    """Give `obj` a copy of a mesh that it shares with others, and remember the shared one."""
+    mesh = obj.data
+    if mesh.users - mesh.use_fake_user <= 1 and mesh.library is None:
+        return
+    own = mesh.copy()
+    journal.on_failure(bpy.data.meshes.remove, own)
+    obj.radiosity.shared_mesh = mesh
+    journal.set(obj, "data", own)
+
+
+def _values_of_corners(mesh: bpy.types.Mesh, target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
+    values = baked_values(baked)
+    if target.same_corners:
+        return {name: _gather_corners(part, target, len(mesh.loops)) for name, part in values.items()}
+    carried = nearest_corners(local_mesh(mesh), target.local, {k: v for k, v in values.items() if v is not None})
+    return {name: carried.get(name) for name in values}
+
+
+def _gather_corners(values: Floats | None, target: Target, count: int) -> Floats | None:
+    """Return (c, 3) the mean over the triangles that meet in each face corner; a polygon's corner may have several."""
+    if values is None:
+        return None
+    corners = target.local.corners.reshape(-1)
+    times = np.maximum(np.bincount(corners, minlength=count), 1)
+    colours = values.reshape(-1, 3)
+    sums = [np.bincount(corners, weights=colours[:, k], minlength=count) for k in range(3)]
+    return np.stack(sums, axis=1) / times[:, None]
+
+
+def _make_room(obj: bpy.types.Object, values: dict[str, Floats | None], journal: Journal) -> None:
+    """Clear the names of our attributes: ours of an earlier bake go, a user's are renamed aside and remembered."""
+    mesh, record = obj.data, obj.radiosity
+    for name, colours in values.items():
+        ours = name in record.attributes
+        if ours and name in mesh.color_attributes:
+            remove_attribute(mesh, name, journal)
+        elif name in mesh.attributes:
+            aside = rename_attribute(mesh, name, f"{name} (before bake)", journal)
+            (record.attributes[name] if ours else _remember(record, name)).aside = aside
+            ours = True
+        if colours is not None:
+            if not ours:
+                _remember(record, name)
+            journal.on_failure(_remove_if_there, mesh, name)
+
+
+def _remember(record, name: str):
+    remembered = record.attributes.add()
+    remembered.name = name
+    return remembered
+
+
+def _remove_if_there(mesh: bpy.types.Mesh, name: str) -> None:
+    if name in mesh.color_attributes:
+        mesh.color_attributes.remove(mesh.color_attributes[name])
+
+
+def _show(obj: bpy.types.Object, both_sides: bool, journal: Journal) -> None:
+    """Put the display material in all slots, remembering what was there."""
+    record = obj.radiosity
+    material = display.display_material(both_sides, journal)
+    if not obj.material_slots:
+        obj.data.materials.append(material)
+        journal.on_failure(obj.data.materials.clear)
+        record.slot_added = True
+        return
+    for index, slot in enumerate(obj.material_slots):
+        if index >= len(record.slots):
+            record.slots.add()
+        if not display.is_display(slot.material):
+            record.slots[index].material, record.slots[index].link = slot.material, slot.link
+        journal.set(slot, "material", material)

@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One mesh of Blender as arrays, and as it stands in the world."""
+
+from dataclasses import dataclass, replace
+from hashlib import blake2b
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ..core.scene import Floats, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class LocalMesh:
+    """A mesh in its own space, cut into triangles.
+
+    Attributes
+    ----------
+    vertices : (v, 3) float, local units
+    triangles, corners : (t, 3) int
+        Vertices and face corners of the mesh ("loops") at the corners of each triangle.
+    normals : (t, 3, 3) float, unit
+        Shading normals at the corners of each triangle.
+    slots : (t,) int
+        Material index of each triangle.
+    vertex_of_corner : (c,) int
+    materials : tuple of Material or None
+        Those of the mesh itself, which an object's slots may override.
+    """
+
+    vertices: Floats
+    triangles: Ints
+    corners: Ints
+    normals: Floats
+    slots: Ints
+    vertex_of_corner: Ints
+    materials: tuple[Any, ...]
+
+
+def local_mesh(mesh: bpy.types.Mesh) -> LocalMesh:
+    """Return the arrays of a mesh with faces."""
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    triangles = np.empty((count, 3), dtype=np.int32)
+    corners = np.empty((count, 3), dtype=np.int32)
+    slots = np.empty(count, dtype=np.int32)
+    vertices = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+    normals = np.empty((len(mesh.loops), 3), dtype=np.float32)
+    vertex_of_corner = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
+    mesh.loop_triangles.foreach_get("loops", corners.reshape(-1))
+    mesh.loop_triangles.foreach_get("material_index", slots)
+    mesh.vertices.foreach_get("co", vertices.reshape(-1))
+    mesh.corner_normals.foreach_get("vector", normals.reshape(-1))
+    mesh.loops.foreach_get("vertex_index", vertex_of_corner)
+    return LocalMesh(
+        vertices=vertices.astype(np.float64),
+        triangles=triangles.astype(np.int64),
+        corners=corners.astype(np.int64),
+        normals=normals[corners].astype(np.float64),
+        slots=slots.astype(np.int64),
+        vertex_of_corner=vertex_of_corner.astype(np.int64),
+        materials=tuple(mesh.materials),
+    )
+
+
+def fingerprint(mesh: bpy.types.Mesh) -> bytes:
+    """Return a digest of the vertices and faces of `mesh`."""
+    vertices = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    corners = np.empty(len(mesh.loops), dtype=np.int32)
+    starts = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.vertices.foreach_get("co", vertices)
+    mesh.loops.foreach_get("vertex_index", corners)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return blake2b(b"|".join(array.tobytes() for array in (vertices, corners, starts))).digest()
+
+
+def turned_over(local: LocalMesh) -> LocalMesh:
+    """Return the mesh with its triangles wound the other way."""
+    other_way = [0, 2, 1]
+    return replace(
+        local,
+        triangles=local.triangles[:, other_way],
+        corners=local.corners[:, other_way],
+        normals=local.normals[:, other_way],
+    )
+
+
+def placed(local: LocalMesh, matrix: Floats) -> tuple[Floats, Floats]:
+    """Return world vertices (v, 3) and unit corner normals (t, 3, 3), in float64.
+
+    The inverse transpose is the cofactor matrix up to a positive factor (and the sign of the determinant), and the
+    cofactors exist for a matrix that flattens the mesh, too.
+    """
+    linear = matrix[:3, :3]
+    vertices = local.vertices @ linear.T + matrix[:3, 3]
+    cofactors = np.stack([np.cross(linear[(k + 1) % 3], linear[(k + 2) % 3]) for k in range(3)])
+    if np.linalg.det(linear) < 0.0:
+        cofactors = -cofactors
+    normals = local.normals @ cofactors.T
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    return vertices, np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)

@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which objects take part in the light: all that a rendering of the view layer shows, whatever the viewport hides."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+
+from .journal import Journal
+from .record import hidden_in_render, is_output
+
+
+def rendered_objects(view_layer: bpy.types.ViewLayer) -> set[bpy.types.Object]:
+    """Return the objects that a rendering of `view_layer` shows, as if nothing had been baked yet.
+
+    An object renders when any collection that holds it does, with all the collections above that one.
+    """
+    found = set()
+    for layer_collection in _rendered_layer_collections(view_layer):
+        found.update(layer_collection.collection.objects)
+    return {obj for obj in found if not hidden_in_render(obj) and not is_output(obj)}
+
+
+def _rendered_layer_collections(view_layer: bpy.types.ViewLayer) -> Iterator[bpy.types.LayerCollection]:
+    pending = [view_layer.layer_collection]
+    while pending:
+        layer_collection = pending.pop()
+        if layer_collection.collection.hide_render:
+            continue
+        pending.extend(layer_collection.children)
+        # A child may be included again below an excluded collection, so exclusion does not end the descent.
+        if not layer_collection.exclude:
+            yield layer_collection
+
+
+def _rendered_collections(collection: bpy.types.Collection) -> Iterator[bpy.types.Collection]:
+    pending = [collection]
+    while pending:
+        current = pending.pop()
+        if not current.hide_render:
+            yield current
+            pending.extend(current.children)
+
+
+class Participants:
+    """The objects and instances of a view layer that take part in the light transport."""
+
+    def __init__(self, view_layer: bpy.types.ViewLayer) -> None:
+        self.view_layer = view_layer
+        self.objects = rendered_objects(view_layer)
+        self.instanced_collections: set[bpy.types.Collection] = set()
+        self._members: dict[bpy.types.Collection, set[bpy.types.Object]] = {}
+        pending = list(self.objects)
+        while pending:
+            collection = self._instanced_by(pending.pop())
+            if collection is not None and collection not in self._members:
+                parts = list(_rendered_collections(collection))
+                self.instanced_collections.update(parts)
+                members = {obj for part in parts for obj in part.objects if not hidden_in_render(obj)}
+                self._members[collection] = {obj for obj in members if not is_output(obj)}
+                pending.extend(members)
+
+    @staticmethod
+    def _instanced_by(obj: bpy.types.Object) -> bpy.types.Collection | None:
+        return obj.instance_collection if obj.instance_type == "COLLECTION" else None
+
+    def everything(self) -> set[bpy.types.Object]:
+        """Return the participating objects and those inside the collections that they instance."""
+        return self.objects.union(*self._members.values())
+
+    def include(self, instance: bpy.types.DepsgraphObjectInstance) -> bool:
+        """Return whether one entry of `Depsgraph.object_instances` takes part."""
+        original = instance.object.original
+        if is_output(original) or not instance.show_self:
+            return False
+        if not instance.is_instance:
+            return original in self.objects
+        parent = instance.parent.original
+        if parent not in self.objects:
+            return False
+        collection = self._instanced_by(parent)
+        if collection is not None and original in collection.all_objects:
+            return original in self._members.get(collection, ())
+        # Geometry nodes instance an object whether it renders itself or not; the children of instancers must render.
+        return parent.instance_type == "NONE" or not hidden_in_render(original)
+
+
+@contextmanager
+def shown_as_rendered(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Depsgraph, Participants]]:
+    """Lend a dependency graph of what renders, and put every switch back afterwards.
+
+    Python can only ask for the viewport's graph, which leaves out what is hidden there and takes the viewport's
+    modifiers. So for as long as the graph is read, the viewport shows what renders, and nothing is redrawn.
+    """
+    participants = Participants(context.view_layer)
+    journal = Journal()
+    try:
+        _show_objects(journal, participants)
+        _show_collections(journal, participants)
+        _use_render_modifiers(journal, participants, context.scene)
+        yield context.evaluated_depsgraph_get(), participants
+    finally:
+        journal.take_back()
+        context.view_layer.update()
+
+
+def _show_objects(journal: Journal, participants: Participants) -> None:
+    view_layer = participants.view_layer
+    for obj in participants.everything():
+        if obj.hide_viewport:
+            journal.set(obj, "hide_viewport", False)
+        if not obj.show_instancer_for_viewport and obj.show_instancer_for_render:
+            journal.set(obj, "show_instancer_for_viewport", True)
+    for obj in participants.objects:
+        if obj.hide_get(view_layer=view_layer):
+            journal.on_failure(_hide, obj, view_layer)
+            obj.hide_set(False, view_layer=view_layer)
+
+
+def _hide(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> None:
+    obj.hide_set(True, view_layer=view_layer)
+
+
+def _show_collections(journal: Journal, participants: Participants) -> None:
+    for layer_collection in _rendered_layer_collections(participants.view_layer):
+        if layer_collection.hide_viewport:
+            journal.set(layer_collection, "hide_viewport", False)
+        if layer_collection.collection.hide_viewport:
+            journal.set(layer_collection.collection, "hide_viewport", False)
+    for collection in participants.instanced_collections:
+        if collection.hide_viewport:
+            journal.set(collection, "hide_viewport", False)
+
+
+def _use_render_modifiers(journal: Journal, participants: Participants, scene: bpy.types.Scene) -> None:
+    if scene.render.use_simplify:
+        journal.set(scene.render, "simplify_subdivision", scene.render.simplify_subdivision_render)
+    for obj in participants.everything():
+        for modifier in obj.modifiers:
+            if modifier.show_viewport != modifier.show_render:
+                journal.set(modifier, "show_viewport", modifier.show_render)
+            if modifier.type in {"SUBSURF", "MULTIRES"} and modifier.levels != modifier.render_levels:
+                journal.set(modifier, "levels", modifier.render_levels)

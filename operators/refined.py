@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The refined mesh of a bake as an object of its own, in place of its hidden original."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..core.result import BakedMesh
+from ..core.scene import Floats
+from . import display
+from .changes import (
+    in_view_layer,
+    link,
+    make_active,
+    remember_record,
+    select,
+    set_eye,
+)
+from .colours import write_colours
+from .extraction import Target
+from .journal import Journal
+from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
+
+_FLAT_COSINE = 1.0 - 1e-6
+"""A corner is flat when its normal is that of the triangle, to single precision (0.08 degrees)."""
+_LEAST_DETERMINANT = 1e-12
+"""Below this share of the product of its axes' lengths a matrix has no inverse worth having."""
+
+
+def store_refined(
+    source: bpy.types.Object, target: Target, baked: BakedMesh, view_layer: bpy.types.ViewLayer, journal: Journal
+) -> bpy.types.Object:
+    """Make the refined object of `source`, show it and hide `source`; return it."""
+    inverse = _inverse(target.matrix)
+    mesh = _refined_mesh(f"{source.name} Radiosity", target, baked, inverse, journal)
+    _give_slots(mesh, source, target, baked, journal)
+    output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
+    for collection in source.users_collection:
+        link(output, collection, journal)
+    _take_place(source, output, view_layer, journal)
+    return output
+
+
+def _inverse(matrix: Floats) -> Floats | None:
+    """Return the inverse of a transform, or None when it flattens the object."""
+    linear = matrix[:3, :3]
+    lengths = np.linalg.norm(linear, axis=0)
+    if not abs(np.linalg.det(linear)) > _LEAST_DETERMINANT * np.prod(lengths):
+        return None
+    return np.linalg.inv(matrix)
+
+
+def _refined_mesh(
+    name: str, target: Target, baked: BakedMesh, inverse: Floats | None, journal: Journal
+) -> bpy.types.Mesh:
+    # Blender turns the faces of a mirrored object over, as the extraction did; in local space they turn back.
+    order = [0, 2, 1] if target.flipped and inverse is not None else [0, 1, 2]
+    triangles = baked.triangles[:, order]
+    vertices, normals = _in_local_space(target, baked, inverse)
+    mesh = bpy.data.meshes.new(name)
+    journal.on_failure(bpy.data.meshes.remove, mesh)
+    count = len(triangles)
+    mesh.vertices.add(len(vertices))
+    mesh.vertices.foreach_set("co", vertices.astype(np.float32).reshape(-1))
+    mesh.loops.add(3 * count)
+    mesh.loops.foreach_set("vertex_index", triangles.astype(np.int32).reshape(-1))
+    mesh.polygons.add(count)
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    mesh.polygons.foreach_set("material_index", target.local.slots[baked.parent_triangle].astype(np.int32))
+    mesh.update(calc_edges=True)
+    write_colours(
+        mesh,
+        {
+            name: None if values is None else values[:, order].reshape(-1, 3)
+            for name, values in baked_values(baked).items()
+        },
+    )
+    _shade(mesh, vertices, triangles, normals[:, order])
+    # Last, because it may drop faces that Blender cannot hold (a corner used twice) with all that belongs to them.
+    mesh.validate()
+    return mesh
+
+
+def baked_values(baked: BakedMesh) -> dict[str, Floats | None]:
+    """Return the values of a baked mesh by the name of their attribute, None where there are none."""
+    return {
+        display.RADIOSITY: baked.radiosity,
+        display.IRRADIANCE: baked.irradiance,
+        display.RADIOSITY_BACK: baked.radiosity_back,
+        display.IRRADIANCE_BACK: baked.irradiance_back,
+    }
+
+
+def _in_local_space(target: Target, baked: BakedMesh, inverse: Floats | None) -> tuple[Floats, Floats]:
+    """Return vertices and corner normals in the space of the output object, which is the world's without an inverse."""
+    if inverse is None:
+        return baked.vertices, baked.corner_normals
+    vertices = baked.vertices @ inverse[:3, :3].T + inverse[:3, 3]
+    # The vertices that were there before come first; taken as they were, they match their neighbours to the last bit.
+    known = len(target.local.vertices)
+    if len(vertices) >= known:
+        vertices[:known] = target.local.vertices
+    # Normals went out by the inverse transpose, so they come back by the transpose.
+    normals = baked.corner_normals @ target.matrix[:3, :3]
+    length = np.linalg.norm(normals, axis=-1, keepdims=True)
+    return vertices, np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
+
+
+def _shade(mesh: bpy.types.Mesh, vertices: Floats, triangles: np.ndarray, normals: Floats) -> None:
+    """Shade each triangle flat or smooth as its corner normals say; smooth ones keep exactly those normals."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    own = np.cross(b - a, c - a)
+    length = np.linalg.norm(own, axis=1, keepdims=True)
+    own = np.divide(own, length, out=np.zeros_like(own), where=length > 0.0)
+    smooth = np.any(np.einsum("tj,tkj->tk", own, normals) < _FLAT_COSINE, axis=1) & (length[:, 0] > 0.0)
+    mesh.polygons.foreach_set("use_smooth", smooth)
+    if np.any(smooth):
+        mesh.normals_split_custom_set(normals.astype(np.float32).reshape(-1, 3))
+
+
+def _give_slots(
+    mesh: bpy.types.Mesh, source: bpy.types.Object, target: Target, baked: BakedMesh, journal: Journal
+) -> None:
+    material = display.display_material(baked.radiosity_back is not None, journal)
+    used = int(target.local.slots.max(initial=0)) + 1
+    for _ in range(max(used, len(source.material_slots))):
+        mesh.materials.append(material)
+
+
+def _object_like(
+    source: bpy.types.Object, mesh: bpy.types.Mesh, keep_transform: bool, journal: Journal
+) -> bpy.types.Object:
+    """Return a copy of `source` with another mesh: same parent, transform, constraints and settings, no modifiers."""
+    output = source.copy()
+    journal.on_failure(bpy.data.objects.remove, output)
+    output.name = mesh.name
+    forget(output)
+    output.modifiers.clear()
+    output.instance_type = "NONE"
+    for slot in output.material_slots:
+        slot.link = "DATA"
+    output.data = mesh
+    if not keep_transform:
+        output.animation_data_clear()
+        output.constraints.clear()
+        output.parent = None
+        _reset_transform(output)
+    output.radiosity.kind = REFINED_OUTPUT
+    output.radiosity.source = source
+    return output
+
+
+def _reset_transform(obj: bpy.types.Object) -> None:
+    for name in ("location", "rotation_euler", "rotation_quaternion", "scale"):
+        obj.property_unset(f"delta_{name}")
+    obj.matrix_basis = Matrix.Identity(4)
+
+
+def _take_place(
+    source: bpy.types.Object, output: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal
+) -> None:
+    """Show, select and activate `output` as `source` is, then hide `source` and remember how it was."""
+    eye = in_view_layer(source, view_layer) and source.hide_get(view_layer=view_layer)
+    set_eye(output, eye, view_layer, journal)
+    if in_view_layer(source, view_layer):
+        select(output, source.select_get(view_layer=view_layer), view_layer, journal)
+        select(source, source.select_get(view_layer=view_layer), view_layer, journal)
+    if view_layer.objects.active == source:
+        make_active(output, view_layer, journal)
+    remember_record(source, journal)
+    record = source.radiosity
+    record.kind = HIDDEN_SOURCE
+    record.hide_render, record.hide_viewport, record.hide_eye = source.hide_render, source.hide_viewport, eye
+    set_eye(source, True, view_layer, journal)
+    journal.set(source, "hide_render", True)
+    journal.set(source, "hide_viewport", True)

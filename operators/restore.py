@@ -1,0 +1,183 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bringing the originals back exactly as they were before a bake."""
+
+from collections.abc import Iterable
+
+import bpy
+
+from . import display
+from .changes import (
+    clear_record,
+    in_view_layer,
+    link,
+    make_active,
+    remember_active_attributes,
+    remove_attribute,
+    rename_attribute,
+    select,
+    set_active_attributes,
+    set_eye,
+)
+from .journal import Journal
+from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, is_output, source_of
+
+
+class RADIOSITY_OT_restore(bpy.types.Operator):
+    """Remove the baked light and bring the original meshes and materials back.
+
+    The selected objects if any of them is baked, else all of the scene
+    """
+
+    bl_idname = "radiosity.restore"
+    bl_label = "Restore Originals"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
+
+    @classmethod
+    def poll(cls, context):
+        """Return whether there is anything to restore; the tooltip says why not."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Leave edit mode to restore")
+            return False
+        if not any(is_baked(obj) for obj in context.scene.objects):
+            cls.poll_message_set("Nothing in this scene is baked")
+            return False
+        return True
+
+    def execute(self, context):
+        """Restore and say how many objects came back."""
+        baked = baked_objects(context.selected_objects) or baked_objects(context.scene.objects)
+        restore(baked, context.view_layer)
+        if not any(is_baked(obj) for obj in context.scene.objects):
+            context.scene.radiosity.property_unset("report")
+            display.show_as_before(context)
+        self.report({"INFO"}, f"Restored {len(baked)} {'object' if len(baked) == 1 else 'objects'}")
+        return {"FINISHED"}
+
+
+def is_baked(obj: bpy.types.Object) -> bool:
+    """Return whether `obj` is part of a bake: a refined output, its hidden source, or baked in place."""
+    return is_output(obj) or obj.radiosity.kind in {HIDDEN_SOURCE, BAKED_IN_PLACE}
+
+
+def baked_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Return the originals of those of `objects` that are baked, each once."""
+    return list(dict.fromkeys(source_of(obj) for obj in objects if is_baked(obj)))
+
+
+def restore(objects: Iterable[bpy.types.Object], view_layer: bpy.types.ViewLayer) -> None:
+    """Bring back what `objects` were before their bake, all of them or none."""
+    with Journal() as journal:
+        for obj in objects:
+            restore_object(obj, view_layer, journal)
+        journal.later(display.remove_unused_display_materials)
+
+
+def restore_object(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal) -> None:
+    """Bring back what `obj`, an original, was before its bake; nothing happens if it was not baked."""
+    outputs = outputs_of(obj)
+    if outputs or obj.radiosity.kind == HIDDEN_SOURCE:
+        _restore_source(obj, outputs, view_layer, journal)
+    elif obj.radiosity.kind == BAKED_IN_PLACE:
+        _restore_in_place(obj, journal)
+
+
+def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return the refined meshes that stand for `source`: one, or more if the user duplicated it."""
+    return [obj for obj in bpy.data.objects if is_output(obj) and obj.radiosity.source == source]
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Refined: the source is hidden, its output shown
+
+
+def _restore_source(source, outputs, view_layer, journal: Journal) -> None:
+    selected = any(in_view_layer(output, view_layer) and output.select_get(view_layer=view_layer) for output in outputs)
+    active = view_layer.objects.active in outputs
+    for collection in {collection for output in outputs for collection in output.users_collection}:
+        # The source may have been deleted from the scene; only our pointer kept it.
+        if not source.users_collection:
+            link(source, collection, journal)
+    for output in outputs:
+        discard_output(output, journal)
+    record = source.radiosity
+    if record.kind == HIDDEN_SOURCE:
+        hide_render, hide_viewport, hide_eye = record.hide_render, record.hide_viewport, record.hide_eye
+        clear_record(source, journal)
+        journal.set(source, "hide_render", hide_render)
+        journal.set(source, "hide_viewport", hide_viewport)
+        set_eye(source, hide_eye, view_layer, journal)
+    if selected:
+        select(source, True, view_layer, journal)
+    if active and in_view_layer(source, view_layer):
+        make_active(source, view_layer, journal)
+
+
+def discard_output(output: bpy.types.Object, journal: Journal) -> None:
+    """Take a refined object out of the scene now, and remove it with its mesh when all else went well."""
+    # Its name is free again for the next bake's output.
+    journal.set(output.data, "name", f"{output.data.name} (discarded)"[:60])
+    journal.set(output, "name", f"{output.name} (discarded)"[:60])
+    for collection in output.users_collection:
+        journal.on_failure(collection.objects.link, output)
+        collection.objects.unlink(output)
+    journal.later(_remove_with_mesh, output)
+
+
+def _remove_with_mesh(obj: bpy.types.Object) -> None:
+    mesh = obj.data
+    bpy.data.objects.remove(obj)
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# In place: slots, attributes and maybe the mesh were changed
+
+
+def _restore_in_place(obj: bpy.types.Object, journal: Journal) -> None:
+    record = obj.radiosity
+    if record.shared_mesh is not None:
+        copy = obj.data
+        _restore_slots(obj, journal, of_object_only=True)
+        journal.set(obj, "data", record.shared_mesh)
+        journal.later(_remove_if_unused, copy)
+    else:
+        _restore_slots(obj, journal)
+        restore_attributes(obj, journal)
+    clear_record(obj, journal)
+
+
+def _remove_if_unused(mesh: bpy.types.Mesh) -> None:
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)
+
+
+def _restore_slots(obj: bpy.types.Object, journal: Journal, of_object_only: bool = False) -> None:
+    """Give back the remembered materials of the slots that still show a bake."""
+    remembered = list(obj.radiosity.slots)
+    for index, slot in enumerate(obj.material_slots):
+        before = remembered[index] if index < len(remembered) else None
+        if of_object_only and (before is None or before.link != "OBJECT"):
+            continue
+        if before is not None and slot.link != before.link:
+            journal.set(slot, "link", before.link)
+        if display.is_display(slot.material):
+            journal.set(slot, "material", before.material if before is not None else None)
+    if obj.radiosity.slot_added and not of_object_only and len(obj.data.materials) == 1:
+        materials = obj.data.materials
+        journal.on_failure(materials.append, materials[0])
+        materials.clear()
+
+
+def restore_attributes(obj: bpy.types.Object, journal: Journal) -> None:
+    """Remove our attributes from the mesh of `obj` and give the user's their names and places back."""
+    mesh, record = obj.data, obj.radiosity
+    before = (record.active_attribute, record.active_color, record.default_color)
+    remember_active_attributes(mesh, journal)
+    for attribute in list(record.attributes):
+        if attribute.name in mesh.color_attributes:
+            remove_attribute(mesh, attribute.name, journal)
+        if attribute.aside and attribute.aside in mesh.attributes:
+            rename_attribute(mesh, attribute.aside, attribute.name, journal)
+    set_active_attributes(mesh, *before)

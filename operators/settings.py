@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of a scene as the artist sees them; their defaults are those of `core`."""
+
+import bpy
+import numpy as np
+
+from ..core.settings import BakeSettings
+
+DEFAULTS = BakeSettings()
+
+METHOD_ITEMS = (
+    ("ADAPTIVE", "Adaptive", "Split surfaces only where light changes: near lamps, at shadow borders and in corners"),
+    (
+        "UNIFORM",
+        "Uniform",
+        "Split every surface down to the minimum size: simple and even, but slow; good to compare with",
+    ),
+)
+QUALITY_ITEMS = (
+    ("DRAFT", "Draft", "Seconds: enough to judge the light while you move lamps and change colours"),
+    ("GOOD", "Good", "Smooth shadows without visible noise: right for most scenes"),
+    ("HIGH", "High", "The cleanest shadows and corners, for the final bake; takes several times as long as Good"),
+)
+OUTPUT_ITEMS = (
+    (
+        "REFINED",
+        "Refined Mesh",
+        "Make new objects with as many vertices as the shadows need; the originals are kept, hidden, and come back "
+        "with Restore",
+    ),
+    (
+        "ORIGINAL",
+        "Original Mesh",
+        "Write the light on the corners that your meshes have now, without adding vertices. "
+        "Shadows are as sharp as the meshes are fine",
+    ),
+)
+
+
+class RadiositySettings(bpy.types.PropertyGroup):
+    """What a bake is asked for, and the report of the last one (`scene.radiosity`)."""
+
+    threshold: bpy.props.FloatProperty(
+        name="Threshold",
+        description=(
+            "A surface is split while it receives more than this share of the light that leaves another one. "
+            "Smaller values give more vertices and finer shadows"
+        ),
+        default=DEFAULTS.threshold,
+        min=0.0001,
+        max=1.0,
+        soft_min=0.002,
+        soft_max=0.2,
+        precision=3,
+        step=0.1,
+        options=set(),
+    )
+    minimum_size: bpy.props.FloatProperty(
+        name="Minimum Size",
+        description=(
+            "Surfaces are not split into edges shorter than this. Halve it to sharpen shadows. "
+            "0 chooses it from the size of the scene and the quality"
+        ),
+        subtype="DISTANCE",
+        unit="LENGTH",
+        default=DEFAULTS.minimum_size,
+        min=0.0,
+        soft_max=10.0,
+        precision=3,
+        options=set(),
+    )
+    method: bpy.props.EnumProperty(
+        name="Method",
+        description="How surfaces are split",
+        items=METHOD_ITEMS,
+        default=DEFAULTS.method,
+        options=set(),
+    )
+    quality: bpy.props.EnumProperty(
+        name="Quality",
+        description="How many rays are traced for every surface and vertex",
+        items=QUALITY_ITEMS,
+        default=DEFAULTS.quality,
+        options=set(),
+    )
+    output: bpy.props.EnumProperty(
+        name="Output",
+        description="Which mesh the baked light is written on",
+        items=OUTPUT_ITEMS,
+        default=DEFAULTS.output,
+        options=set(),
+    )
+    seed: bpy.props.IntProperty(
+        name="Seed",
+        description="Changes the pattern of the remaining noise; the same seed always gives the same result",
+        default=DEFAULTS.seed,
+        min=0,
+        options=set(),
+    )
+    threads: bpy.props.IntProperty(
+        name="Threads",
+        description="Processor cores that trace rays; 0 uses all of them. The result is the same for any number",
+        default=DEFAULTS.threads,
+        min=0,
+        soft_max=64,
+        options=set(),
+    )
+    memory_limit: bpy.props.IntProperty(
+        name="Memory Limit (MiB)",
+        description="Memory that the bake may use for its rays, in MiB. A small limit is slower, never less accurate",
+        default=DEFAULTS.memory_limit,
+        min=64,
+        soft_max=65536,
+        options=set(),
+    )
+    report: bpy.props.StringProperty(
+        name="Report",
+        description="What came of the last bake, as JSON",
+        options={"HIDDEN"},
+    )
+    shading_before: bpy.props.StringProperty(
+        name="Shading Before",
+        description="What the viewport's solid shading showed before the bake, so that Restore can set it back",
+        options={"HIDDEN"},
+    )
+
+
+def _as_typed(value: float) -> float:
+    """Return the shortest decimal that Blender rounds to the single-precision `value`: 0.02, not 0.0199999996."""
+    return float(str(np.float32(value)))
+
+
+def bake_settings(properties: RadiositySettings) -> BakeSettings:
+    """Return the scene's settings in the form that `core` takes.
+
+    Raises
+    ------
+    SettingsError
+        When a value is outside its range.
+    """
+    return BakeSettings(
+        threshold=_as_typed(properties.threshold),
+        minimum_size=_as_typed(properties.minimum_size),
+        method=properties.method,
+        quality=properties.quality,
+        output=properties.output,
+        seed=properties.seed,
+        threads=properties.threads,
+        memory_limit=properties.memory_limit,
+    )

@@ -1,0 +1,115 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The end of a bake: every baked object gets its values, all of them or none."""
+
+import bpy
+import numpy as np
+
+from ..core.errors import BakeError
+from ..core.result import BakeResult
+from . import display
+from .extraction import Extraction, Target, fingerprint
+from .in_place import store_in_place
+from .journal import Journal
+from .record import BAKED_IN_PLACE
+from .refined import store_refined
+from .restore import restore_object
+
+
+class ChangedMeanwhileError(BakeError):
+    """An object is no longer what it was when the bake began."""
+
+
+def store(
+    scene: bpy.types.Scene, extraction: Extraction, result: BakeResult, output: str
+) -> tuple[list[bpy.types.Object], list[str]]:
+    """Write `result` into the file in place of any earlier bake of the same objects.
+
+    Parameters
+    ----------
+    output : str
+        `'REFINED'` or `'ORIGINAL'`.
+
+    Returns
+    -------
+    objects : list of Object
+        Those that carry the baked colours now.
+    warnings : list of str
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        When an object was deleted, edited or is being edited; nothing is changed then.
+    """
+    view_layer = scene.view_layers.get(extraction.view_layer)
+    if view_layer is None:
+        raise ChangedMeanwhileError(
+            f'The view layer "{extraction.view_layer}" was removed or renamed during the bake; nothing was stored'
+        )
+    targets = {target.mesh: target for target in extraction.targets}
+    pairs = [(targets[baked.mesh], baked) for baked in result.meshes]
+    found = _find([target for target, _ in pairs], view_layer)
+    warnings = [sentence for target, obj in found for sentence in _cautions(target, obj, output)]
+    baked_objects = []
+    with Journal() as journal:
+        for (target, obj), (_, baked) in zip(found, pairs, strict=True):
+            # A second bake in place only needs new values; what the first one remembers stays true.
+            if not (output == "ORIGINAL" and obj.radiosity.kind == BAKED_IN_PLACE):
+                restore_object(obj, view_layer, journal)
+            if output == "REFINED":
+                baked_objects.append(store_refined(obj, target, baked, view_layer, journal))
+            else:
+                store_in_place(obj, target, baked, journal)
+                baked_objects.append(obj)
+        journal.later(display.remove_unused_display_materials)
+    return baked_objects, warnings
+
+
+def scene_of(extraction: Extraction) -> bpy.types.Scene:
+    """Return the scene that was read, which need not be the one that the window shows by now.
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        When it was deleted.
+    """
+    for scene in bpy.data.scenes:
+        if scene.session_uid == extraction.scene_uid:
+            return scene
+    raise ChangedMeanwhileError("The scene was deleted during the bake; nothing was stored")
+
+
+def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[Target, bpy.types.Object]]:
+    """Return each target with its object, looked up anew: pointers do not survive an undo during the bake."""
+    by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
+    shown = set(view_layer.objects)
+    found = []
+    for target in targets:
+        obj = by_uid.get(target.uid)
+        if obj is None or (obj not in shown and obj.users_scene == ()):
+            raise ChangedMeanwhileError(f'"{target.name}" was deleted during the bake; nothing was stored')
+        if obj.mode != "OBJECT":
+            raise ChangedMeanwhileError(
+                f'"{obj.name}" is in {obj.mode.replace("_", " ").lower()} mode; '
+                "nothing was stored. Leave the mode and bake again"
+            )
+        if fingerprint(obj.data) != target.fingerprint:
+            raise ChangedMeanwhileError(
+                f'The mesh of "{obj.name}" was edited during the bake; nothing was stored. Bake again'
+            )
+        found.append((target, obj))
+    return found
+
+
+def _cautions(target: Target, obj: bpy.types.Object, output: str) -> list[str]:
+    sentences = []
+    if not np.allclose(np.array(obj.matrix_world), target.matrix, rtol=1e-5, atol=1e-6):
+        sentences.append(f'"{obj.name}" was moved during the bake; its light is that of the place where it was')
+    if output == "ORIGINAL" and not target.same_corners:
+        sentences.append(
+            f'"{obj.name}" has modifiers that change its faces; '
+            "its corners got the light of the nearest point of the modified mesh"
+        )
+    if output == "REFINED" and obj.is_instancer:
+        sentences.append(f'The instances that "{obj.name}" makes are hidden together with it')
+    return sentences

@@ -1,0 +1,11 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the artist sees; it shows what the operators know and computes nothing."""
+
+import bpy
+
+from . import panel
+
+register, unregister = bpy.utils.register_classes_factory(
+    (panel.VIEW3D_PT_radiosity, panel.VIEW3D_PT_radiosity_sampling, panel.VIEW3D_PT_radiosity_result)
+)

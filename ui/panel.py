@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tab "Radiosity" in the sidebar of the 3D viewport."""
+
+import json
+import textwrap
+
+import bpy
+
+from ..operators.bake import RADIOSITY_OT_bake, reason_not_to_bake
+
+_CHARACTER_WIDTH = 7.0
+"""Average width of a letter in pixels at a scale of 1, to break sentences where the panel ends."""
+
+
+class _InSidebar:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Radiosity"
+
+
+class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
+    """Settings, the bake button or the progress of the bake, and the way back."""
+
+    bl_label = "Radiosity Bake"
+
+    def draw(self, context):
+        """Draw the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.radiosity
+        job = RADIOSITY_OT_bake.job
+
+        column = layout.column()
+        column.active = job is None
+        column.prop(settings, "quality")
+        column.prop(settings, "output")
+        column.prop(settings, "method")
+        column.prop(settings, "threshold")
+        column.prop(settings, "minimum_size")
+
+        if job is not None:
+            _draw_progress(layout, job.latest)
+            return
+        row = layout.row()
+        row.scale_y = 1.5
+        row.operator("radiosity.bake", icon="LIGHT_AREA")
+        reason = reason_not_to_bake(context)
+        if reason is not None:
+            _draw_sentence(layout, context, reason, "INFO")
+        layout.operator("radiosity.restore", icon="LOOP_BACK")
+
+
+class VIEW3D_PT_radiosity_sampling(_InSidebar, bpy.types.Panel):
+    """Settings that are seldom needed."""
+
+    bl_label = "Sampling"
+    bl_parent_id = "VIEW3D_PT_radiosity"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads it from the class
+
+    def draw(self, context):
+        """Draw the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.active = RADIOSITY_OT_bake.job is None
+        settings = context.scene.radiosity
+        layout.prop(settings, "seed")
+        layout.prop(settings, "threads")
+        layout.prop(settings, "memory_limit")
+
+
+class VIEW3D_PT_radiosity_result(_InSidebar, bpy.types.Panel):
+    """What came of the last bake."""
+
+    bl_label = "Last Bake"
+    bl_parent_id = "VIEW3D_PT_radiosity"
+
+    @classmethod
+    def poll(cls, context):
+        """Return whether there was a bake."""
+        return bool(context.scene.radiosity.report)
+
+    def draw(self, context):
+        """Draw the panel."""
+        report = json.loads(context.scene.radiosity.report)
+        layout = self.layout
+        grid = layout.column(align=True)
+        for name, value in _rows(report):
+            split = grid.split(factor=0.45)
+            left = split.row()
+            left.alignment = "RIGHT"
+            left.label(text=name)
+            split.label(text=value)
+        for warning in report.get("warnings", ()):
+            _draw_sentence(layout, context, warning, "ERROR")
+
+
+def _rows(report: dict) -> list[tuple[str, str]]:
+    rows = [
+        (name, f"{report[key]:,}")
+        for name, key in (("Patches", "patches"), ("Vertices", "vertices"), ("Rays", "rays"))
+        if key in report
+    ]
+    rows.append(("Time", f"{report['seconds']['total']:.1f} s"))
+    if report.get("estimated_error") is not None:
+        rows.append(("Estimated Error", f"{report['estimated_error']:.1%}"))
+    return rows
+
+
+def _draw_progress(layout, progress) -> None:
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    row.scale_y = 1.5
+    row.progress(factor=progress.share, text=f"{progress.stage}  {progress.share:.0%}")
+    row.operator("radiosity.cancel", text="", icon="X")
+    if progress.detail:
+        column.label(text=progress.detail)
+
+
+def _draw_sentence(layout, context, sentence: str, icon: str) -> None:
+    """Draw a sentence over as many lines as the width of the panel asks for."""
+    scale = context.preferences.system.ui_scale
+    width = max(int(context.region.width / (_CHARACTER_WIDTH * scale)) - 6, 16)
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for number, line in enumerate(textwrap.wrap(sentence, width)):
+        column.label(text=line, icon=icon if number == 0 else "BLANK1")
