@@ -151,9 +151,9 @@ def panel(name: str, low: ArrayLike, size: tuple[float, float], emission: ArrayL
 def cornell_box() -> Scene:
     """The Cornell box with its measured coordinates and colours, the lamp set into a hole of the ceiling.
 
-    Emitters glow on both sides, as in Cycles, so a lamp hung under the ceiling lights the strip of ceiling that it hides
-    100 times brighter than anything that is seen: that would be the mean, and the error, of the whole box. What hangs
-    like that is `cornell_box_hung`.
+    Emitters glow on both sides, as in Cycles, so a lamp hung under the ceiling lights the part of it that it hides 100
+    times brighter than anything that is seen: that would be the mean, and the error, of the whole box. What hangs like
+    that is `cornell_box_hung`.
     """
     meshes = {mesh.name: mesh for mesh in cornell_box_hung().meshes}
     ceiling, lamp = meshes["Ceiling"], meshes["Lamp"]

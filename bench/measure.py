@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One bake, timed and compared with the reference."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.settings import BakeSettings
+
+from .accuracy import Accuracy, compare, irradiance_at_probes
+from .probes import Probes, area_uniform_probes
+from .reference import Reference, irradiance
+from .scenes import SCENES
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A scene with its probes and reference: what every method is compared on."""
+
+    name: str
+    scene: Scene
+    probes: Probes
+    reference: Reference
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What a bake cost and how good it is.
+
+    Attributes
+    ----------
+    seconds : float
+        Wall clock of `core.bake.bake`, everything included.
+    report : dict
+        The bake's own.
+    """
+
+    seconds: float
+    report: dict[str, Any]
+    accuracy: Accuracy
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what JSON can hold."""
+        return {"seconds": self.seconds, "report": self.report, "accuracy": self.accuracy.as_json()}
+
+
+@cache
+def judged(name: str, probes: int = 4000, samples: int = 16384) -> Judged:
+    """Return a scene of `SCENES` with its reference, computed once and then read from disk."""
+    scene = SCENES[name]()
+    points = area_uniform_probes(scene, probes)
+    truth = irradiance(scene, points.position, points.normal, points.shading_normal, samples=samples)
+    return Judged(name, scene, points, truth)
+
+
+def measure(case: Judged, settings: BakeSettings, repeat: int = 1) -> Measured:
+    """Bake, and compare; the shortest of `repeat` times counts, as anything longer is the machine's doing."""
+    seconds = []
+    for _ in range(repeat):
+        start = time.perf_counter()
+        result = bake(case.scene, settings)
+        seconds.append(time.perf_counter() - start)
+    values = irradiance_at_probes(result, case.probes)
+    return Measured(min(seconds), result.report, compare(case.scene, case.probes, values, case.reference))
