@@ -59,19 +59,24 @@ def balance_of(transport: Transport, shares: Shares) -> Balance:
     lost = shares.source == ESCAPED
     escape = np.zeros(len(elements))
     escape[number[shares.receiver[lost]]] = shares.share[lost]
-    receiver, source = number[shares.receiver[~lost]], number[shares.source[~lost]]
     nodes, triangle = elements >> 1, tree.triangle[elements >> 1]
     a, b, c = (tree.points[tree.corners[nodes, k]] for k in range(3))
     buried = transport.buried_share()[elements]
     return Balance(
         elements,
-        Exchange(receiver, source, shares.share[~lost]),
+        exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
         np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried),
         buried,
         surfaces.reflectance[triangle],
         surfaces.emission[triangle],
     )
+
+
+def exchange_of(receiver: Ints, source: Ints, factor: Floats) -> Exchange:
+    """Make rows of entries whose receivers are together."""
+    start = np.flatnonzero(np.diff(receiver, prepend=-1))
+    return Exchange(receiver[start], start, source, factor.astype(np.float32))
 
 
 def explicit_emission(transport: Transport, balance: Balance, emitters: Emitters) -> Floats:
@@ -91,9 +96,8 @@ def direct_on_patches(
     def work(first: int, last: int) -> Floats:
         elements = balance.elements[first:last]
         points, normals = sample_points(surfaces, tree, elements, POINTS_PER_PATCH, seed + 51)
-        keys = np.repeat(elements, POINTS_PER_PATCH) * POINTS_PER_PATCH + np.tile(
-            np.arange(POINTS_PER_PATCH), len(elements)
-        )
+        keys = (elements[:, None] * POINTS_PER_PATCH + np.arange(POINTS_PER_PATCH)).ravel()
+        points, normals = points.reshape(-1, 3), normals.reshape(-1, 3)
         light, _ = direct_irradiance(
             emitters, transport.rays, points, normals, normals, keys, SHADOW_RAYS_PER_POINT, seed + 52
         )

@@ -59,9 +59,7 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     return np.sqrt(square)
 
 
-def relative_error(
-    corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: np.ndarray
-) -> float:
+def relative_error(corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: np.ndarray) -> float:
     """Estimated RMS error over the surface relative to its mean: interpolation and noise added in squares.
 
     Parameters

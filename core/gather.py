@@ -12,12 +12,17 @@ from numpy.typing import NDArray
 
 from .direct import LUMINANCE, Emitters, direct_irradiance
 from .receivers import Receivers
-from .sampling import cosine_directions, hashed, sequence, shifted
+from .sampling import Patterns, Singles, frames
 from .scene import Floats, Ints
 from .transport import BURIED, ESCAPED, Transport
+from .visibility import OFFSET
 
 LEAST_VALID_SHARE = 0.5
 """A receiver is buried when fewer of its rays than this left it outside a solid; from an outside point all do."""
+
+
+BELOW = -3
+"""Stands for what a ray meets that would leave below the surface, beside `ESCAPED` and `BURIED`."""
 
 
 @dataclass(frozen=True)
@@ -45,23 +50,23 @@ class Radiance:
 
     Attributes
     ----------
-    values : (2 * nodes + 2, 3) float, W m^-2 sr^-1
-        By element; the last two stand for `BURIED` and `ESCAPED`, which index from the end.
-    dark : (2 * nodes + 2,) bool
+    values : (2 * nodes + 3, 3) float32, W m^-2 sr^-1
+        By element; the last three stand for `BELOW`, `BURIED` and `ESCAPED`, which index from the end.
+    dark : (2 * nodes + 3,) bool
         Surfaces that would reflect light and have none, and insides of solids.
     """
 
-    values: Floats
+    values: Singles
     dark: NDArray[np.bool_]
 
     @staticmethod
     def of(elements: Floats, dark: NDArray[np.bool_], world: Floats) -> Radiance:
         """Join the radiance of elements (2 * nodes, 3) with that of the world (3,)."""
-        assert (BURIED, ESCAPED) == (-2, -1)
-        return Radiance(
-            np.concatenate([elements, np.zeros((1, 3)), np.reshape(world, (1, 3))]),
-            np.concatenate([dark, [True, False]]),
-        )
+        values = np.concatenate([elements, np.zeros((3, 3))])
+        values[ESCAPED] = world
+        seen_dark = np.concatenate([dark, np.ones(3, dtype=bool)])
+        seen_dark[ESCAPED] = False
+        return Radiance(values.astype(np.float32), seen_dark)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +102,10 @@ def gather(
     """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`."""
     total = len(receivers.points)
 
+    patterns = Patterns.make(0, counts.hemisphere, transport.seed + 101)
+
     def indirect(first: int, last: int) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
-        return _indirect_part(transport, radiance, receivers, slice(first, last), counts.hemisphere)
+        return _indirect_part(transport, radiance, receivers, slice(first, last), patterns)
 
     parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
@@ -112,25 +119,27 @@ def gather(
 
 
 def _indirect_part(
-    transport: Transport, radiance: Radiance, receivers: Receivers, part: slice, rays: int
+    transport: Transport, radiance: Radiance, receivers: Receivers, part: slice, patterns: Patterns
 ) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
-    square = shifted(sequence(0, rays, 2), hashed(receivers.keys[part], 2, transport.seed + 101))
-    directions = cosine_directions(square, receivers.normals[part]).reshape(-1, 3)
-    lift = np.repeat(receivers.lift[part], rays, axis=0)
+    rays = patterns.directions.shape[1]
+    pattern, angle = patterns.choose(receivers.keys[part], transport.seed + 101)
+    directions = (patterns.directions[pattern] @ frames(receivers.normals[part], angle)).reshape(-1, 3)
+    lift = receivers.lift[part].astype(np.float32)
+    origins = np.repeat(transport.rays.local(receivers.points[part]) + lift * np.float32(OFFSET), rays, axis=0)
+    count = len(lift)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.
-    above = np.flatnonzero(np.einsum("nx,nx->n", directions, lift) > 0.0)
-    origins = np.repeat(receivers.points[part], rays, axis=0)
-    elements, _ = transport.look(origins[above], lift[above], directions[above])
-    count = len(receivers.points[part])
-    seen = np.zeros((count * rays, 3))
-    seen[above] = radiance.values[elements]
-    buried, dark = np.zeros(count * rays, dtype=bool), np.ones(count * rays, dtype=bool)
-    buried[above], dark[above] = elements == BURIED, radiance.dark[elements]
-    valid = rays - buried.reshape(count, rays).sum(axis=1)
-    seen = seen.reshape(count, rays, 3)
-    means = seen.sum(axis=1) / np.maximum(valid, 1)[:, None]
+    above = (directions.reshape(count, rays, 3) @ lift[:, :, None]).ravel() > 0.0
+    elements = np.full(count * rays, BELOW, dtype=np.int32)
+    if above.all():
+        elements, _, _, _ = transport.look(origins, directions)
+    else:
+        elements[above], _, _, _ = transport.look(origins[above], directions[above])
+    seen = radiance.values[elements].reshape(count, rays, 3)
+    valid = rays - (elements == BURIED).reshape(count, rays).sum(axis=1)
+    means = seen.sum(axis=1, dtype=np.float64) / np.maximum(valid, 1)[:, None]
     half = seen[:, : rays // 2].mean(axis=1) - seen[:, rays // 2 :].mean(axis=1)
-    return means, np.abs(half @ LUMINANCE) / 2.0, valid / rays, dark.reshape(count, rays).all(axis=1)
+    dark = radiance.dark[elements].reshape(count, rays).all(axis=1)
+    return means, np.abs(half @ LUMINANCE) / 2.0, valid / rays, dark
 
 
 def _direct(

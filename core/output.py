@@ -48,9 +48,7 @@ def baked_meshes(
     return tuple(meshes), warnings
 
 
-def _lit_from_behind(
-    surfaces: Surfaces, faces: Faces, front: Floats, back: Floats, has_back: np.ndarray
-) -> np.ndarray:
+def _lit_from_behind(surfaces: Surfaces, faces: Faces, front: Floats, back: Floats, has_back: np.ndarray) -> np.ndarray:
     """Faces of shells whose front gets no light at all while their back does, (s,) bool."""
     shell = surfaces.shell_of_triangle[faces.triangle]
     size = len(surfaces.closed)

@@ -40,8 +40,10 @@ class PatchTree:
         -1 for a leaf.
     kind : (n,) int
         How the node is split (`FOUR` or the halved edge).
-    parent : (n,) int
-        -1 for a root.
+    root : (n,) int
+        The coarse patch each node was split from by midpoints; -1 for triangles that were halved into coarse patches.
+    level : (n,) int
+        Splits by midpoints below its coarse patch.
     """
 
     def __init__(self, surfaces: Surfaces) -> None:
@@ -55,7 +57,8 @@ class PatchTree:
         self.weights: Floats = np.broadcast_to(np.eye(3), (count, 3, 3)).copy()
         self.first_child: Ints = np.full(count, -1, dtype=np.int64)
         self.kind: NDArray[np.int8] = np.full(count, FOUR, dtype=np.int8)
-        self.parent: Ints = np.full(count, -1, dtype=np.int64)
+        self.root: Ints = np.arange(count, dtype=np.int64)
+        self.level: Ints = np.zeros(count, dtype=np.int64)
         self._edge_keys: Ints = np.zeros(0, dtype=np.int64)
         self._edge_midpoints: Ints = np.zeros(0, dtype=np.int64)
 
@@ -68,6 +71,7 @@ class PatchTree:
         other.__dict__.update(self.__dict__)
         other.first_child = self.first_child.copy()
         other.kind = self.kind.copy()
+        other.root = self.root.copy()
         return other
 
     def leaves(self) -> Ints:
@@ -136,6 +140,17 @@ class PatchTree:
             moving = moving[self.first_child[nodes[moving]] >= 0]
         return nodes, weights
 
+    def descend_halves(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
+        """As `descend`, but only through triangles that were halved, to the coarse patches."""
+        nodes, weights = nodes.copy(), weights.copy()
+        moving = np.flatnonzero(self.root[nodes] < 0)
+        while len(moving):
+            node = nodes[moving]
+            child, weights[moving] = _child_of_two(weights[moving], self.kind[node])
+            nodes[moving] = self.first_child[node] + child
+            moving = moving[self.root[nodes[moving]] < 0]
+        return nodes, weights
+
     @staticmethod
     def _ordered(starts: Ints, ends: Ints) -> tuple[Ints, Ints]:
         return np.minimum(starts, ends), np.maximum(starts, ends)
@@ -171,7 +186,12 @@ class PatchTree:
         self.weights = np.concatenate([self.weights, weights])
         self.first_child = np.concatenate([self.first_child, np.full(len(children), -1, dtype=np.int64)])
         self.kind = np.concatenate([self.kind, np.full(len(children), FOUR, dtype=np.int8)])
-        self.parent = np.concatenate([self.parent, np.repeat(nodes, each)])
+        if each == 4:
+            root, level = np.repeat(self.root[nodes], each), np.repeat(self.level[nodes] + 1, each)
+        else:
+            self.root[nodes] = -1
+            root, level = children, np.zeros(len(children), dtype=np.int64)
+        self.root, self.level = np.concatenate([self.root, root]), np.concatenate([self.level, level])
         return children
 
 

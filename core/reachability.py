@@ -15,7 +15,7 @@ from .direct import LUMINANCE
 from .sampling import cosine_directions, hashed, triangle_weights
 from .scene import Floats, Ints
 from .surfaces import Surfaces
-from .visibility import RayScene
+from .visibility import OFFSET, RayScene
 
 WALKS = 16384
 """Random walks started; a side that takes part in the lighting of a room meets hundreds of them."""
@@ -40,14 +40,15 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
         a, b, c = (surfaces.points[surfaces.triangles[triangle, k]] for k in range(3))
         origin = a + (b - a) * weights[:, :1] + (c - a) * weights[:, 1:]
         turn = hashed(np.arange(len(triangle)) + WALKS * (bounce + 1), 2, seed)
-        direction = cosine_directions(turn[:, None], normal)[:, 0]
-        hits = rays.first_hits(origin, normal, direction)
+        direction = cosine_directions(turn, normal)
+        start = rays.local(origin) + (normal * OFFSET).astype(np.float32)
+        hits = rays.first_hits(start, direction.astype(np.float32))
         met = hits.triangle >= 0
         if bounce == 0:
             shell_before = surfaces.shell_of_triangle[triangle]
             met &= ~(inward & (surfaces.shell_of_triangle[hits.triangle] == shell_before))
         triangle, weights = hits.triangle[met].astype(np.int64), hits.weights[met].astype(np.float64)
-        back = np.einsum("nx,nx->n", direction[met], surfaces.normals[triangle]) > 0.0
+        back = hits.back[met]
         np.add.at(visits, (surfaces.shell_of_triangle[triangle], back.astype(np.int64)), 1.0)
         reflecting = surfaces.reflectance[triangle].any(axis=1)
         triangle, weights, back = triangle[reflecting], weights[reflecting], back[reflecting]

@@ -54,9 +54,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         The faces and their sides (1: the back) that want values.
     """
     corners, points = faces.corners[face_of_side], faces.points
-    shading = side_normals(
-        faces.corner_normals(surfaces)[face_of_side].reshape(-1, 3), np.repeat(side, 3)
-    )
+    shading = side_normals(faces.corner_normals(surfaces)[face_of_side].reshape(-1, 3), np.repeat(side, 3))
     place = faces.places[corners].ravel()
     cells = np.rint(shading * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS
     span = 2 * NORMAL_CELLS + 1

@@ -8,14 +8,12 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .patches import PatchTree
 from .scene import Floats, Ints
 from .transport import ESCAPED, Shares, Transport
 
-MOST_BLOCKS = 4
-"""Blocks of rays an element may have; the second to last are for pairs too close to the threshold to decide."""
+MOST_APPEALS = 3
+"""Times in a round that more rays are asked for, each time for the pair on which the split of a fragment now rests."""
 
 THRESHOLD_MET = "every form factor is below the threshold"
 SIZE_MET = "every fragment whose form factor is above the threshold is at the minimum size"
@@ -69,13 +67,13 @@ Seeds = Callable[[], Ints]
 
 def trace_all(transport: Transport, seeds: Seeds, report: Callable[[float], None]) -> int:
     """Trace every seed, then every element that rays met, until none is missing; returns the rows added."""
-    before = len(transport.element_of_row)
+    before = transport.row_count()
     wanted = seeds()
     wanted = wanted[~transport.has_row()[wanted]]
     while len(wanted):
-        transport.trace(wanted, np.zeros(len(wanted), dtype=np.int64), report)
+        transport.trace(wanted, report)
         wanted = transport.met_but_untraced()
-    return len(transport.element_of_row) - before
+    return transport.row_count() - before
 
 
 def refine(
@@ -102,7 +100,7 @@ def refine(
     while True:
         fragments, rays_before = len(tree.leaves()), transport.rays.rays
         rows = trace_all(transport, seeds, report)
-        flagged, largest, more, blocked = _flagged(transport, threshold, smallest, report)
+        flagged, largest, more = _flagged(transport, threshold, smallest, report)
         full = fragments + 3 * len(flagged) > most_leaves
         if full:
             flagged = flagged[:0]
@@ -114,7 +112,7 @@ def refine(
             Round(fragments, rows + more, transport.rays.rays - rays_before, len(flagged), moved, float(largest))
         )
         if len(flagged) == 0:
-            ended = LIMIT_MET if full else SIZE_MET if blocked else THRESHOLD_MET
+            ended = LIMIT_MET if full else _why_ended(transport, threshold)
             return Refinement(tuple(rounds), ended)
 
 
@@ -145,50 +143,47 @@ def refine_uniformly(
 
 def _flagged(
     transport: Transport, threshold: float, smallest: float, report: Callable[[float], None]
-) -> tuple[Ints, float, int, bool]:
-    """Leaves to split, the largest form factor, rows added to decide, and whether some are too small to split."""
+) -> tuple[Ints, float, int]:
+    """Leaves to split, the largest form factor to a leaf that may be, and the rows lengthened to decide."""
     tree = transport.tree
     splittable = np.zeros(len(tree), dtype=bool)
     leaves = tree.leaves()
     splittable[leaves] = tree.sizes(leaves) >= 2.0 * smallest
-    before = len(transport.element_of_row)
-    while True:
-        shares = transport.shares()
-        undecided = _undecided_receivers(transport, shares, splittable, threshold)
-        if len(undecided) == 0:
+    if not splittable.any():
+        return np.zeros(0, dtype=np.int64), 0.0, 0
+    lengthened = 0
+    for appeal in range(MOST_APPEALS + 1):
+        shares = transport.shares_to(np.repeat(splittable, 2))
+        undecided = _undecided_receivers(transport, shares, threshold)
+        if len(undecided) == 0 or appeal == MOST_APPEALS:
             break
-        transport.trace(undecided, _next_block(transport, undecided), report)
-    more = len(transport.element_of_row) - before
-    real = shares.source != ESCAPED
-    above = real & (shares.share > threshold)
-    nodes = np.unique(shares.source[above] >> 1)
-    largest = float(shares.share[real].max(initial=0.0))
-    return nodes[splittable[nodes]], largest, more, bool(len(nodes) and not splittable[nodes].all())
+        transport.lengthen(undecided, report)
+        trace_all(transport, lambda: undecided, report)
+        lengthened += len(undecided)
+    nodes = np.unique(shares.source[shares.share > threshold] >> 1)
+    return nodes, float(shares.share.max(initial=0.0)), lengthened
 
 
-def _undecided_receivers(
-    transport: Transport, shares: Shares, splittable: NDArray[np.bool_], threshold: float
-) -> Ints:
+def _undecided_receivers(transport: Transport, shares: Shares, threshold: float) -> Ints:
     """Receivers whose rays cannot tell yet whether some fragment must be split, and that may have more of them.
 
-    A pair is undecided while its form factor is within one standard error of the threshold and no other receiver has
-    decided the split of the same fragment.
+    A fragment is undecided while the largest form factor to it is within one standard error of the threshold: then the
+    receiver of that pair is asked for more rays.
     """
-    candidates = np.flatnonzero(shares.source != ESCAPED)
-    node = shares.source[candidates] >> 1
-    candidates, node = candidates[splittable[node]], node[splittable[node]]
-    error = shares.standard_error()[candidates]
-    distance = shares.share[candidates] - threshold
-    decided = np.zeros(len(splittable), dtype=bool)
-    decided[node[distance > error]] = True
-    unsure = (np.abs(distance) <= error) & ~decided[node]
-    receivers = np.unique(shares.receiver[candidates[unsure]])
-    blocks = np.bincount(transport.element_of_row, minlength=2 * len(transport.tree))
-    return receivers[blocks[receivers] < MOST_BLOCKS]
+    node = shares.source >> 1
+    highest = np.zeros(len(transport.tree))
+    np.maximum.at(highest, node, shares.share)
+    strongest = np.flatnonzero(shares.share == highest[node])
+    error = shares.standard_error()[strongest]
+    unsure = strongest[np.abs(shares.share[strongest] - threshold) <= error]
+    receivers = np.unique(shares.receiver[unsure])
+    return receivers[~transport.has_long_row()[receivers]]
 
 
-def _next_block(transport: Transport, elements: Ints) -> Ints:
-    return np.bincount(transport.element_of_row, minlength=2 * len(transport.tree))[elements].astype(np.int64)
+def _why_ended(transport: Transport, threshold: float) -> str:
+    shares = transport.shares()
+    above = (shares.source != ESCAPED) & (shares.share > threshold)
+    return SIZE_MET if above.any() else THRESHOLD_MET
 
 
 def largest_standard_error(shares: Shares) -> float:

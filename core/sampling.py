@@ -3,18 +3,26 @@
 """Low-discrepancy points, decorrelated from one receiver to the next, and what they are mapped to.
 
 The sequences are additive recurrences on the generalised golden ratio (M. Roberts 2018): point i has coordinates
-frac(i * a_d) with a_d = g**-(d+1) and g the positive root of x**(dim+1) = x + 1. Each receiver shifts them by its own
-hash (Cranley & Patterson 1976), so the pattern depends on nothing but the seed and the receiver's number.
+frac(i * a_d) with a_d = g**-(d+1) and g the positive root of x**(dim+1) = x + 1. A fixed number of patterns are made of
+them, each shifted by its own random numbers (Cranley & Patterson 1976); a receiver takes the pattern that its hash
+names and turns it about its normal by an angle that its hash gives. So a ray costs no more than two products of small
+matrices, and depends on nothing but the seed and the receiver's number.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .scene import Floats, Ints
+
+PATTERNS = 64
+"""Patterns that receivers share; turned about their normals, no two receivers have the same rays."""
+
+Singles = NDArray[np.float32]
 
 
 @lru_cache
@@ -59,20 +67,60 @@ def triangle_weights(square: Floats) -> Floats:
     return np.where(square.sum(axis=-1, keepdims=True) > 1.0, 1.0 - square, square)
 
 
-def cosine_directions(square: Floats, normals: Floats) -> Floats:
-    """Directions with density cos / pi about each normal: (n, r, 2) and (n, 3) give (n, r, 3).
+def hemisphere(square: Floats) -> Floats:
+    """Directions about +z with density cos / pi from points of the unit square, (..., 2) to (..., 3)."""
+    radius, angle = np.sqrt(square[..., 0]), square[..., 1] * (2.0 * np.pi)
+    height = np.sqrt(np.maximum(0.0, 1.0 - square[..., 0]))
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=-1)
+
+
+def frames(normals: Floats, angles: Floats) -> Singles:
+    """Rows tangent, bitangent and normal of each (n, 3), turned about the normal by (n,) radians: (n, 3, 3).
 
     The frame is that of Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
     """
-    radius = np.sqrt(square[..., 0])
-    angle = square[..., 1] * (2.0 * np.pi)
-    x, y = radius * np.cos(angle), radius * np.sin(angle)
-    z = np.sqrt(np.maximum(0.0, 1.0 - square[..., 0]))
     nx, ny, nz = normals[:, 0], normals[:, 1], normals[:, 2]
     sign = np.where(nz >= 0.0, 1.0, -1.0)
     a = -1.0 / (sign + nz)
     b = nx * ny * a
     tangent = np.stack([1.0 + sign * nx * nx * a, sign * b, -sign * nx], axis=-1)
     bitangent = np.stack([b, sign + ny * ny * a, -ny], axis=-1)
-    frame = np.stack([tangent, bitangent, normals], axis=1)
-    return np.stack([x, y, z], axis=-1) @ frame
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    turned = [cos * tangent + sin * bitangent, cos * bitangent - sin * tangent, normals]
+    return np.stack(turned, axis=1).astype(np.float32)
+
+
+def cosine_directions(square: Floats, normals: Floats) -> Floats:
+    """One direction for each normal with density cos / pi about it: (n, 2) and (n, 3) give (n, 3)."""
+    frame = frames(normals, np.zeros(len(normals)))
+    return np.einsum("nk,nkx->nx", hemisphere(square), frame.astype(np.float64))
+
+
+@dataclass(frozen=True, eq=False)
+class Patterns:
+    """Sampling patterns of r rays, with positions on a triangle where the rays leave a patch.
+
+    Attributes
+    ----------
+    directions : (PATTERNS, r, 3) float32
+        About +z, with density cos / pi.
+    positions : (PATTERNS, r, 3) float32
+        (1, u, v) with the barycentric weights of corners 1 and 2.
+    """
+
+    directions: Singles
+    positions: Singles
+
+    @staticmethod
+    def make(first: int, count: int, seed: int) -> Patterns:
+        """Rays `first` to `first + count - 1` of each pattern; patterns with the same seed go on where others ended."""
+        shifts = hashed(np.arange(PATTERNS), 4, seed)
+        points = shifted(sequence(first, count, 4), shifts)
+        weights = triangle_weights(points[..., 2:])
+        positions = np.concatenate([np.ones((*weights.shape[:2], 1)), weights], axis=-1)
+        return Patterns(hemisphere(points[..., :2]).astype(np.float32), positions.astype(np.float32))
+
+    def choose(self, keys: Ints, seed: int) -> tuple[Ints, Floats]:
+        """The pattern of each receiver and the angle it is turned by, both (n,)."""
+        drawn = hashed(keys, 2, seed)
+        return (drawn[:, 0] * PATTERNS).astype(np.int64), drawn[:, 1] * (2.0 * np.pi)

@@ -99,7 +99,9 @@ def join(scene: Scene) -> Surfaces:
         normals=normals,
         areas=np.linalg.norm(cross, axis=1) / 2.0,
         corner_normals=_shading_normals(gather([m.corner_normals for m in scene.meshes]), normals),
-        reflectance=_reflectance(scene.meshes, gather([m.reflectance for m in scene.meshes]), mesh_of_triangle, warnings),
+        reflectance=_reflectance(
+            scene.meshes, gather([m.reflectance for m in scene.meshes]), mesh_of_triangle, warnings
+        ),
         emission=np.maximum(np.nan_to_num(gather([m.emission for m in scene.meshes]), posinf=0.0), 0.0),
         mesh_of_triangle=mesh_of_triangle,
         input_triangle=np.concatenate(kept),
@@ -145,7 +147,9 @@ def _shading_normals(corner_normals: Floats, normals: Floats) -> Floats:
     return np.where(wrong[..., None], normals[:, None, :], unit)
 
 
-def _reflectance(meshes: tuple[SurfaceMesh, ...], values: Floats, mesh_of_triangle: Ints, warnings: list[str]) -> Floats:
+def _reflectance(
+    meshes: tuple[SurfaceMesh, ...], values: Floats, mesh_of_triangle: Ints, warnings: list[str]
+) -> Floats:
     values = np.nan_to_num(values, posinf=1.0)
     outside = ((values < 0.0) | (values > 1.0)).any(axis=1)
     for mesh in np.unique(mesh_of_triangle[outside]):

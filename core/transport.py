@@ -2,25 +2,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The traced transport: for each side of each patch, where its rays ended.
 
-An *element* is one side of a patch: twice the patch's node, plus 1 for the back. A *row* is a block of rays that leave
-one element with cosine distribution from points spread over it; the share of them that ends on another element is the
-form factor to it.
+An *element* is one side of a patch: twice the patch's node, plus 1 for the back. Its *row* are rays that leave it with
+cosine distribution from points spread over it; the share of them that ends on another element is the form factor to it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .location import Locator
 from .patches import PatchTree
 from .reachability import side_normals
-from .sampling import cosine_directions, hashed, sequence, shifted, triangle_weights
+from .sampling import Patterns, Singles, frames, hashed, sequence, shifted, triangle_weights
 from .scene import Floats, Ints
 from .surfaces import Surfaces
-from .visibility import RayScene
+from .visibility import OFFSET, RayScene
 
 ESCAPED = -1
 """Hit of a ray that left the scene."""
@@ -28,8 +28,11 @@ ESCAPED = -1
 BURIED = -2
 """Hit of a ray that started inside a solid: it met the inside of a closed mesh that no light enters."""
 
-BYTES_PER_RAY = 12
-"""Kept for every ray: element (int32) and two barycentric weights (float32)."""
+BYTES_PER_RAY = 20
+"""Kept for every ray: element and coarse patch (int32), two barycentric weights and the distance (float32)."""
+
+LONG_ROW = 4
+"""Times more rays that an element is given when the first ones cannot tell whether a fragment must be split."""
 
 
 def element_normals(surfaces: Surfaces, tree: PatchTree, elements: Ints) -> Floats:
@@ -44,9 +47,76 @@ def points_in(tree: PatchTree, nodes: Ints, weights: Floats) -> Floats:
     return a + (b - a) * u + (c - a) * v
 
 
+def sample_points(surfaces: Surfaces, tree: PatchTree, elements: Ints, count: int, seed: int) -> tuple[Floats, Floats]:
+    """Points spread over elements and the normals there, both (m, count, 3)."""
+    square = shifted(sequence(0, count, 2), hashed(elements, 2, seed))
+    points = points_in(tree, elements >> 1, triangle_weights(square))
+    normals = element_normals(surfaces, tree, elements)
+    return points, np.broadcast_to(normals[:, None], points.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Rows of equally many rays.
+
+    Attributes
+    ----------
+    element : (k,) int
+    hits : (k, r) int32
+        Element that each ray met, `ESCAPED` or `BURIED`.
+    root : (k, r) int32
+        Coarse patch of each hit.
+    weights : (k, r, 2) float32
+        Where on the coarse patch.
+    distance : (k, r) float32
+        In the ray library's units.
+    valid : (k,) int
+        Rays that did not start inside a solid.
+    """
+
+    element: Ints
+    hits: NDArray[np.int32]
+    root: NDArray[np.int32]
+    weights: Singles
+    distance: Singles
+    valid: Ints
+
+    @staticmethod
+    def none(rays: int) -> Rows:
+        """No rows of so many rays."""
+        return Rows(
+            np.zeros(0, np.int64),
+            np.zeros((0, rays), np.int32),
+            np.zeros((0, rays), np.int32),
+            np.zeros((0, rays, 2), np.float32),
+            np.zeros((0, rays), np.float32),
+            np.zeros(0, np.int64),
+        )
+
+    def taken(self, which: NDArray[np.bool_] | Ints) -> Rows:
+        """Some of the rows."""
+        return Rows(*(getattr(self, field.name)[which] for field in fields(self)))
+
+    @staticmethod
+    def stacked(parts: list[Rows]) -> Rows:
+        """Rows below each other."""
+        return Rows(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(Rows)))
+
+    def continued(self, more: Rows) -> Rows:
+        """The same elements with the rays of `more` behind their own."""
+        return Rows(
+            self.element,
+            np.concatenate([self.hits, more.hits], axis=1),
+            np.concatenate([self.root, more.root], axis=1),
+            np.concatenate([self.weights, more.weights], axis=1),
+            np.concatenate([self.distance, more.distance], axis=1),
+            self.valid + more.valid,
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class Shares:
-    """Form factors as counts of rays, one entry for each pair that exchanges any.
+    """Form factors as shares of rays, one entry for each pair that exchanges any; a receiver's entries are together.
 
     Attributes
     ----------
@@ -75,122 +145,182 @@ class Transport:
 
     Attributes
     ----------
-    element_of_row, block_of_row : (r,) int
-    hits : (r, k) int32
-        Element that each ray met, `ESCAPED` or `BURIED`.
-    weights : (r, k, 2) float32
-        Where on the patch.
+    tables : list of Rows
+        Elements with rows of ordinary length, and those with long ones.
     """
 
     def __init__(
-        self, surfaces: Surfaces, tree: PatchTree, rays: RayScene, solid: NDArray[np.bool_], rays_per_row: int, seed: int
+        self,
+        surfaces: Surfaces,
+        tree: PatchTree,
+        rays: RayScene,
+        solid: NDArray[np.bool_],
+        rays_per_row: int,
+        seed: int,
     ) -> None:
         self.surfaces, self.tree, self.rays, self.seed = surfaces, tree, rays, seed
         self.rays_per_row = rays_per_row
         self.solid_triangle = solid[surfaces.shell_of_triangle]
-        self.element_of_row: Ints = np.zeros(0, dtype=np.int64)
-        self.block_of_row: Ints = np.zeros(0, dtype=np.int64)
-        self.hits: NDArray[np.int32] = np.zeros((0, rays_per_row), dtype=np.int32)
-        self.weights: NDArray[np.float32] = np.zeros((0, rays_per_row, 2), dtype=np.float32)
+        self.tables = [Rows.none(rays_per_row), Rows.none(rays_per_row * LONG_ROW)]
+        self.locator = Locator(tree)
+        self._patterns = [
+            Patterns.make(0, rays_per_row, seed),
+            Patterns.make(rays_per_row, rays_per_row * (LONG_ROW - 1), seed),
+        ]
+
+    def row_count(self) -> int:
+        """Rows traced and kept."""
+        return sum(len(table.element) for table in self.tables)
 
     def has_row(self) -> NDArray[np.bool_]:
         """Whether each element has been traced, (2 * nodes,)."""
         known = np.zeros(2 * len(self.tree), dtype=bool)
-        known[self.element_of_row] = True
+        for table in self.tables:
+            known[table.element] = True
+        return known
+
+    def has_long_row(self) -> NDArray[np.bool_]:
+        """Whether each element has a long row, (2 * nodes,)."""
+        known = np.zeros(2 * len(self.tree), dtype=bool)
+        known[self.tables[1].element] = True
         return known
 
     def met_but_untraced(self) -> Ints:
         """Elements that some ray met and that have no row of their own yet, sorted."""
-        met = np.zeros(2 * len(self.tree), dtype=bool)
-        met[self.hits[self.hits >= 0]] = True
-        return np.flatnonzero(met & ~self.has_row())
+        met = np.zeros(2 * len(self.tree) + 2, dtype=bool)
+        for table in self.tables:
+            met[table.hits.ravel()] = True  # the two special hits mark the last two places
+        return np.flatnonzero(met[:-2] & ~self.has_row())
 
-    def trace(self, elements: Ints, blocks: Ints, report: Callable[[float], None] = lambda share: None) -> None:
-        """Add a row for each element; block b continues the element's sampling sequence after b rows."""
+    def trace(self, elements: Ints, report: Callable[[float], None] = lambda share: None) -> None:
+        """Trace a row for each element."""
+        if len(elements):
+            self.tables[0] = Rows.stacked([self.tables[0], self._traced(elements, self._patterns[0], report)])
 
-        def work(first: int, last: int) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-            return self._trace_part(elements[first:last], blocks[first:last])
+    def lengthen(self, elements: Ints, report: Callable[[float], None] = lambda share: None) -> None:
+        """Trace more rays for elements that have an ordinary row, which goes on where it ended."""
+        ordinary = self.tables[0]
+        place = np.full(2 * len(self.tree), -1, dtype=np.int64)
+        place[ordinary.element] = np.arange(len(ordinary.element))
+        row = place[elements]
+        more = self._traced(elements, self._patterns[1], report)
+        keep = np.ones(len(ordinary.element), dtype=bool)
+        keep[row] = False
+        self.tables[1] = Rows.stacked([self.tables[1], ordinary.taken(row).continued(more)])
+        self.tables[0] = ordinary.taken(keep)
 
-        parts = self.rays.map(work, len(elements), self.rays_per_row, report)
-        if parts:
-            self.element_of_row = np.concatenate([self.element_of_row, elements])
-            self.block_of_row = np.concatenate([self.block_of_row, blocks])
-            self.hits = np.concatenate([self.hits, *(hits for hits, _ in parts)])
-            self.weights = np.concatenate([self.weights, *(weights for _, weights in parts)])
+    def _traced(self, elements: Ints, patterns: Patterns, report: Callable[[float], None]) -> Rows:
+        count = patterns.directions.shape[1]
 
-    def _trace_part(self, elements: Ints, blocks: Ints) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        count = self.rays_per_row
-        points = np.stack([sequence(int(b) * count, count, 4) for b in range(int(blocks.max()) + 1)])[blocks]
-        moved = points + hashed(elements, 4, self.seed)[:, None, :]
-        moved -= moved >= 1.0
-        normals = element_normals(self.surfaces, self.tree, elements)
-        origins = points_in(self.tree, elements >> 1, triangle_weights(moved[..., :2]))
-        directions = cosine_directions(moved[..., 2:], normals)
-        hits, weights = self.look(
-            origins.reshape(-1, 3), np.repeat(normals, count, axis=0), directions.reshape(-1, 3)
-        )
-        return hits.reshape(-1, count), weights.reshape(-1, count, 2)
+        def work(first: int, last: int) -> Rows:
+            part = elements[first:last]
+            pattern, angle = patterns.choose(part, self.seed)
+            normals = element_normals(self.surfaces, self.tree, part)
+            corner, edge1, edge2 = self._local_triangles(part >> 1)
+            spread = np.stack([corner + (normals * OFFSET).astype(np.float32), edge1, edge2], axis=1)
+            origins = patterns.positions[pattern] @ spread
+            directions = patterns.directions[pattern] @ frames(normals, angle)
+            hits, root, weights, distance = self.look(origins.reshape(-1, 3), directions.reshape(-1, 3))
+            hits = hits.reshape(-1, count)
+            return Rows(
+                part,
+                hits,
+                root.reshape(-1, count),
+                weights.reshape(-1, count, 2),
+                distance.reshape(-1, count),
+                count - (hits == BURIED).sum(axis=1),
+            )
 
-    def look(self, origins: Floats, normals: Floats, directions: Floats) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        """Trace rays (n, 3) and return the leaf elements they meet (n,) and the weights there (n, 2)."""
-        found = self.rays.first_hits(origins, normals, directions)
-        triangle, weights = found.triangle, found.weights
-        met = np.flatnonzero(triangle >= 0)
-        facing = self.surfaces.normals[triangle[met]]
-        back = np.einsum("nx,nx->n", directions[met], facing) > 0.0
-        nodes, weights[met] = self.tree.descend(triangle[met], weights[met])
-        elements = np.full(len(triangle), ESCAPED, dtype=np.int32)
-        elements[met] = np.where(back & self.solid_triangle[triangle[met]], BURIED, 2 * nodes + back)
-        return elements, weights
+        return Rows.stacked(self.rays.map(work, len(elements), count, report))
+
+    def _local_triangles(self, nodes: Ints) -> tuple[Singles, Singles, Singles]:
+        """First corner of each node and the two edges from it, in the ray library's coordinates."""
+        a, b, c = (self.tree.points[self.tree.corners[nodes, k]] for k in range(3))
+        scale = self.rays.scale
+        return self.rays.local(a), ((b - a) * scale).astype(np.float32), ((c - a) * scale).astype(np.float32)
+
+    def look(
+        self, origins: Singles, directions: Singles
+    ) -> tuple[NDArray[np.int32], NDArray[np.int32], Singles, Singles]:
+        """Trace rays (n, 3) in the ray library's coordinates.
+
+        Returns
+        -------
+        element : (n,) int32
+            The leaf element met, `ESCAPED` or `BURIED`.
+        root : (n,) int32
+            The coarse patch met, and on it
+        weights : (n, 2) float32
+        distance : (n,) float32
+        """
+        found = self.rays.first_hits(origins, directions)
+        missed = found.triangle < 0
+        triangle = np.maximum(found.triangle, 0)
+        root = self.locator.coarse(triangle, found.weights)
+        element = 2 * self.locator.leaves(root, found.weights) + found.back
+        element[found.back & self.solid_triangle[triangle]] = BURIED
+        element[missed] = ESCAPED
+        return element, root, found.weights, found.distance
 
     def follow_splits(self) -> int:
         """Drop the rows of patches that were split, and move the rays that met one to the child they met.
 
         Returns the number of rays moved; none is traced.
         """
-        keep = self.tree.first_child[self.element_of_row >> 1] < 0
-        self.element_of_row, self.block_of_row = self.element_of_row[keep], self.block_of_row[keep]
-        self.hits, self.weights = self.hits[keep], self.weights[keep]
-        flat, weights = self.hits.reshape(-1), self.weights.reshape(-1, 2)
-        valid = np.flatnonzero(flat >= 0)
-        stale = valid[self.tree.first_child[flat[valid] >> 1] >= 0]
-        nodes, weights[stale] = self.tree.descend(flat[stale].astype(np.int64) >> 1, weights[stale])
-        flat[stale] = 2 * nodes + (flat[stale] & 1)
-        return len(stale)
+        moved = 0
+        self.locator = Locator(self.tree)
+        split = np.append(np.repeat(self.tree.first_child >= 0, 2), [False, False])
+        for k, table in enumerate(self.tables):
+            table = table.taken(~split[table.element])
+            flat = table.hits.reshape(-1)
+            stale = np.flatnonzero(split[flat])
+            leaf = self.locator.leaves(table.root.reshape(-1)[stale], table.weights.reshape(-1, 2)[stale])
+            flat[stale] = 2 * leaf + (flat[stale] & 1)
+            self.tables[k] = table
+            moved += len(stale)
+        return moved
 
     def shares(self) -> Shares:
         """Form factors of all pairs from the rows as they are."""
-        ordered = np.sort(self.hits, axis=1)
-        change = np.ones(ordered.shape, dtype=bool)
-        change[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
-        starts = np.flatnonzero(change)
-        count = np.diff(np.append(starts, ordered.size))
-        row = starts // max(1, self.rays_per_row)
-        source = ordered.reshape(-1)[starts].astype(np.int64)
-        receiver = self.element_of_row[row]
-        # Blocks of the same element are added up.
-        key, inverse = np.unique((receiver << 32) + (source + 2), return_inverse=True)
-        total = np.bincount(inverse, weights=count, minlength=len(key)).astype(np.int64)
-        receiver, source = key >> 32, (key & 0xFFFFFFFF) - 2
-        size = 2 * len(self.tree)
-        valid = np.bincount(receiver, weights=np.where(source == BURIED, 0, total), minlength=size).astype(np.int64)
-        some = (source != BURIED) & (valid[receiver] > 0)
-        receiver, source, total = receiver[some], source[some], total[some]
-        rays = valid[receiver]
-        return Shares(receiver, source, total / rays, rays)
+        return joined([_all_shares(table) for table in self.tables if len(table.element)])
+
+    def shares_to(self, wanted: NDArray[np.bool_]) -> Shares:
+        """Form factors to the elements marked in `wanted` (2 * nodes,) only, which costs less."""
+        wanted = np.append(wanted, [False, False])
+        return joined([_shares_to(table, wanted) for table in self.tables if len(table.element)])
 
     def buried_share(self) -> Floats:
         """Share of each element's rays that started inside a solid, (2 * nodes,); 0 for elements without a row."""
-        size = 2 * len(self.tree)
-        buried = np.bincount(self.element_of_row, weights=(self.hits == BURIED).sum(axis=1), minlength=size)
-        traced = np.bincount(self.element_of_row, minlength=size) * self.rays_per_row
-        return np.divide(buried, traced, out=np.zeros(size), where=traced > 0)
+        buried = np.zeros(2 * len(self.tree))
+        for table in self.tables:
+            buried[table.element] = 1.0 - table.valid / table.hits.shape[1]
+        return buried
 
 
-def sample_points(
-    surfaces: Surfaces, tree: PatchTree, elements: Ints, count: int, seed: int
-) -> tuple[Floats, Floats]:
-    """Points spread over elements and the normals there, both (m * count, 3)."""
-    square = shifted(sequence(0, count, 2), hashed(elements, 2, seed))
-    points = points_in(tree, elements >> 1, triangle_weights(square))
-    return points.reshape(-1, 3), np.repeat(element_normals(surfaces, tree, elements), count, axis=0)
+def joined(parts: list[Shares]) -> Shares:
+    """Entries of several lists in one; no receiver may be in two of them."""
+    return Shares(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(Shares)))
+
+
+def _all_shares(table: Rows) -> Shares:
+    """Count equal hits in each row."""
+    ordered = np.sort(table.hits, axis=1)
+    change = np.ones(ordered.shape, dtype=bool)
+    np.not_equal(ordered[:, 1:], ordered[:, :-1], out=change[:, 1:])
+    starts = np.flatnonzero(change)
+    count = np.diff(np.append(starts, ordered.size))
+    row = starts // ordered.shape[1]
+    source = ordered.ravel()[starts].astype(np.int64)
+    some = source != BURIED
+    row, source, count = row[some], source[some], count[some]
+    return Shares(table.element[row], source, count / table.valid[row], table.valid[row])
+
+
+def _shares_to(table: Rows, wanted: NDArray[np.bool_]) -> Shares:
+    """Count equal hits in each row, of wanted elements alone."""
+    place = np.flatnonzero(wanted[table.hits])
+    key = np.sort((place // table.hits.shape[1] << 32) | table.hits.ravel()[place])
+    starts = np.flatnonzero(np.diff(key, prepend=-1))
+    count = np.diff(np.append(starts, len(key)))
+    row, source = key[starts] >> 32, key[starts] & 0xFFFFFFFF
+    return Shares(table.element[row], source, count / table.valid[row], table.valid[row])

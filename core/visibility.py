@@ -58,14 +58,20 @@ class Hits:
 
     Attributes
     ----------
-    triangle : (n,) int
+    triangle : (n,) int32
         -1 where the ray left the scene.
-    weights : (n, 2) float
+    weights : (n, 2) float32
         Barycentric weights of the triangle's corners 1 and 2.
+    distance : (n,) float32, local units
+        Huge where the ray left the scene.
+    back : (n,) bool
+        Whether the ray met the side that the triangle's winding makes the back.
     """
 
     triangle: NDArray[np.int32]
     weights: NDArray[np.float32]
+    distance: NDArray[np.float32]
+    back: NDArray[np.bool_]
 
 
 class RayScene:
@@ -84,6 +90,8 @@ class RayScene:
         Rays traced so far.
     seconds : float
         Time spent inside the ray library, summed over threads.
+    scale : float
+        Local units for a scene unit.
     """
 
     def __init__(self, points: Floats, triangles: Ints, threads: int = 0) -> None:
@@ -93,42 +101,43 @@ class RayScene:
         low, high = used.min(axis=0), used.max(axis=0)
         self._centre = (low + high) / 2.0
         extent = float((high - low).max())
-        self._scale = 1.0 / extent if extent > 0.0 else 1.0
-        self.offset = OFFSET / self._scale
+        self.scale = 1.0 / extent if extent > 0.0 else 1.0
         self.rays = 0
         self.seconds = 0.0
         self._counting = threading.Lock()
         self._scene = rtcore_scene.EmbreeScene()
-        local = ((points - self._centre) * self._scale).astype(np.float32)
-        mesh_construction.TriangleMesh(self._scene, np.ascontiguousarray(local), triangles.astype(np.int32))
+        mesh_construction.TriangleMesh(self._scene, self.local(points), triangles.astype(np.int32))
         # Embree builds its tree at the first ray; do it here, on one thread.
         self._scene.run(np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32), query="OCCLUDED")
 
-    def _run(self, origins: Floats, directions: Floats, **options: Any) -> Any:
-        local = ((origins - self._centre) * self._scale).astype(np.float32)
-        toward = directions.astype(np.float32)
+    def local(self, points: Floats) -> NDArray[np.float32]:
+        """Positions (..., 3) in the ray library's own coordinates, centred and scaled to 1."""
+        return ((points - self._centre) * self.scale).astype(np.float32)
+
+    def _run(self, origins: NDArray[np.float32], directions: NDArray[np.float32], **options: Any) -> Any:
         start = time.perf_counter()
-        answer = self._scene.run(np.ascontiguousarray(local), np.ascontiguousarray(toward), **options)
+        answer = self._scene.run(origins, directions, **options)
         elapsed = time.perf_counter() - start
         with self._counting:
             self.seconds += elapsed
-            self.rays += len(local)
+            self.rays += len(origins)
         return answer
 
-    def first_hits(self, origins: Floats, normals: Floats, directions: Floats) -> Hits:
-        """Trace rays (n, 3) that leave a surface of the given normals (n, 3)."""
-        answer = self._run(origins + normals * self.offset, directions, query="INTERSECT", output=True)
+    def first_hits(self, origins: NDArray[np.float32], directions: NDArray[np.float32]) -> Hits:
+        """Trace rays (n, 3) from origins in local coordinates, lifted off their surface by `OFFSET`."""
+        answer = self._run(origins, directions, query="INTERSECT", output=True)
         weights = np.stack([answer["u"], answer["v"]], axis=1)
-        return Hits(np.where(answer["geomID"] >= 0, answer["primID"], -1).astype(np.int32), weights)
+        back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
+        return Hits(answer["primID"], weights, answer["tfar"], back)
 
     def visible(self, origins: Floats, normals: Floats, targets: Floats) -> NDArray[np.bool_]:
-        """Whether nothing lies between each origin, lifted off its surface, and its target, (n,) bool."""
-        start = origins + normals * self.offset
-        toward = targets - start
-        distance = np.linalg.norm(toward, axis=1)
-        toward /= np.maximum(distance, np.finfo(np.float64).tiny)[:, None]
+        """Whether nothing lies between each origin (n, 3), lifted off its surface, and its target, (n,) bool."""
+        start = self.local(origins) + (normals * OFFSET).astype(np.float32)
+        toward = self.local(targets) - start
+        distance = np.sqrt(np.einsum("nx,nx->n", toward, toward))
+        toward /= np.maximum(distance, np.finfo(np.float32).tiny)[:, None]
         # The target lies on a surface of its own: stop short of it by the same offset, twice for grazing rays.
-        limit = (np.maximum(distance - 2.0 * self.offset, 0.0) * self._scale).astype(np.float32)
+        limit = np.maximum(distance - np.float32(2.0 * OFFSET), np.float32(0.0))
         answer: NDArray[np.int32] = self._run(start, toward, dists=limit, query="OCCLUDED")
         return answer < 0
 
