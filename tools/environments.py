@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Make the Python environments that the tests, the demo and the benchmarks run in.
 
-    python3 -m tools.environments           .venv/py311 (Blender 4.2), .venv/py313 (Blender 5.2); .venv/main is the newer
+    python3 -m tools.environments           .venv/py311 (Blender 4.2), .venv/py313 (Blender 5.2), .venv/main (the newer)
     python3 -m tools.environments bench     also what the benchmarks compare with
 
 Each has Blender as a Python module (bpy). Beside each lies a twin without embreex, `.venv/py311-user`: there the ray

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Read the virtual screen's frame buffer file and save it as PNG.
 
-Blender's own screenshot operator gives a black picture under software OpenGL; Xvfb keeps the screen in a file in X window
-dump format (X11/XWDFile.h): a header of 25 big-endian words and the window's name, a colour table of 12 bytes an entry,
-then the rows.
+Blender's own screenshot operator gives a black picture under software OpenGL; Xvfb keeps the screen in a file in the
+format of X window dumps (X11/XWDFile.h): a header of 25 big-endian words and the window's name, a colour table of 12
+bytes an entry, then the rows.
 """
 
 from __future__ import annotations
