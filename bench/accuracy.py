@@ -53,12 +53,15 @@ class FaceError:
 class Accuracy:
     """Errors over all probes (see the module), and of every face.
 
-    `bias` is that of the mean over everything; `luminance_rms` is `rms` with both turned to luminance first; `p95` is
-    the 95th percentile of the absolute error over the mean reference.
+    `lit_rms` is `rms` over the probes that any light reaches: without the floor that a block stands on, which is black
+    and which nobody sees, so that the step at the block's foot does not count. `luminance_rms` is `rms` with both
+    turned to luminance first; `bias` is that of the mean over everything; `p95` is the 95th percentile of the absolute
+    error over the mean reference.
     """
 
     rms: float
     rms_raw: float
+    lit_rms: float
     reference_noise: float
     luminance_rms: float
     bias: float
@@ -175,11 +178,13 @@ def compare(scene: Scene, probes: Probes, values: Floats, reference: Reference) 
         _face_error(name, difference[names == name], truth[names == name], variance[names == name], squared.sum())
         for name in dict.fromkeys(names.tolist())
     )
+    lit = truth.max(axis=1) > 0.0
     luminance = (difference @ LUMINANCE) ** 2
     luminance_noise = variance @ LUMINANCE**2
     return Accuracy(
         rms=_root(squared.mean() - variance.mean()) / scale,
         rms_raw=_root(squared.mean()) / scale,
+        lit_rms=_root(squared[lit].mean() - variance[lit].mean()) / float(truth[lit].mean()),
         reference_noise=_root(variance.mean()) / scale,
         luminance_rms=_root(luminance.mean() - luminance_noise.mean()) / float((truth @ LUMINANCE).mean()),
         bias=float(difference.mean()) / scale,
