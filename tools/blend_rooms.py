@@ -19,7 +19,7 @@ def build_room(name: str) -> list[bpy.types.Object]:
     objects = add_surfaces(ROOMS[name]())
     add_camera(CAMERAS[name])
     make_world_dark()
-    set_render(resolution=400)
+    set_render(width=400, height=round(400 * CAMERAS[name].aspect))
     return objects
 
 
@@ -72,6 +72,7 @@ def add_camera(view: Camera) -> None:
     """Add the camera that the pictures are taken with."""
     data = bpy.data.cameras.new("Camera")
     data.lens, data.sensor_width = view.lens, view.sensor_width
+    data.sensor_fit = "HORIZONTAL"
     data.clip_start = 0.01
     camera = bpy.data.objects.new("Camera", data)
     camera.location = view.location
@@ -93,11 +94,11 @@ def make_world_dark() -> None:
             node.inputs["Strength"].default_value = 0.0
 
 
-def set_render(resolution: int) -> None:
+def set_render(width: int, height: int) -> None:
     """Set Cycles up as a reference: deep paths, nothing clamped, nothing denoised, colours shown as they are."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
-    scene.render.resolution_x = scene.render.resolution_y = resolution
+    scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.resolution_percentage = 100
     scene.view_settings.view_transform = "Standard"
     cycles = scene.cycles

@@ -49,12 +49,13 @@ class Surface:
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a picture is taken from: positions in m, lens and sensor width in mm; the picture is square."""
+    """Where a picture is taken from: positions in m, lens and sensor width in mm, height of the picture by its width."""
 
     location: Point
     target: Point
     lens: float
     sensor_width: float
+    aspect: float = 1.0
 
 
 # ---------------------------------------------------------------------------------------------- the Cornell box
@@ -78,9 +79,9 @@ def cornell_box() -> list[Surface]:
     """Return the Cornell box with its measured coordinates, its lamp 0.1 mm below the ceiling that it is published in.
 
     The numbers are those that the Cornell University Program of Computer Graphics publishes as "Cornell Box Data". The
-    walls are as slightly askew as the real ones, and the blocks have no bottom. Hanging the lamp keeps the ceiling whole,
-    and is what renderers without two-sided lamps do. Blender's lamps glow on both sides: here the strip of ceiling behind
-    the lamp is by far the brightest thing in the room. It makes a hard test, and a bad picture.
+    walls are as slightly askew as the real ones, and the blocks have no bottom. Hanging the lamp keeps the ceiling
+    whole, as is common where lamps glow on one side only. Blender's glow on both: here the strip of ceiling behind the
+    lamp is by far the brightest thing in the room. It makes a hard test, and a bad picture.
     """
     return [
         _cornell_surface("Floor", "White", "552.8 0 0 \n 0 0 0 \n 0 0 559.2 \n 549.6 0 559.2", CORNELL_WHITE),
@@ -155,7 +156,7 @@ def cornell_box() -> list[Surface]:
 
 
 def cornell_box_set_in() -> list[Surface]:
-    """Return the Cornell box with its lamp where it is published, in the plane of the ceiling, which has a hole for it."""
+    """Return the Cornell box with its lamp where it is published: in the plane of the ceiling, which has a hole there."""
     surfaces = {surface.name: surface for surface in cornell_box()}
     ceiling, lamp = surfaces["Ceiling"], surfaces["Lamp"]
     height = ceiling.vertices[0][2]
@@ -234,5 +235,5 @@ ROOMS: dict[str, Callable[[], list[Surface]]] = {"cornell_box": cornell_box_set_
 CAMERAS: dict[str, Camera] = {
     # Published: at (278, 273, -800) mm, looking along z, focal length 35 mm, film 25 mm.
     "cornell_box": Camera(_from_cornell(278, 273, -800), _from_cornell(278, 273, 0), 35.0, 25.0),
-    "paper_scene_1": Camera((0.0, -5.2, 1.6), (0.0, 2.0, 1.4), 42.0, 36.0),
+    "paper_scene_1": Camera((0.0, -5.2, 1.5), (0.0, 2.0, 1.5), 45.0, 36.0, 0.75),
 }
