@@ -3,7 +3,8 @@
 """Other programs on the same scenes and probes: Mitsuba 3, Radiance `rtrace -I`, Cycles' bake to vertices.
 
 Mitsuba and Radiance compute at the probes themselves, so they have no interpolation error and as many points as there
-are probes; both favour them. Cycles bakes the vertices of a uniform subdivision, and the probes interpolate it, as for us.
+are probes; both favour them. Cycles bakes the vertices of a uniform subdivision, and the probes interpolate it, as they
+do for us.
 """
 
 from __future__ import annotations
