@@ -5,8 +5,15 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from tools.real_blender import RealBlender
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "radiosity_bake"
@@ -27,3 +34,35 @@ load_package()
 # `tools` holds what the tests share with the demo and the benchmarks: `from tools.rooms import cornell_box`.
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
+
+
+@pytest.fixture(scope="session")
+def zips(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """The zips, built from the checkout as it is."""
+    from tools.build import build
+
+    return build(tmp_path_factory.mktemp("dist"))
+
+
+@pytest.fixture(scope="session")
+def linux_zip(zips: list[Path]) -> Path:
+    """The zip for this platform."""
+    return next(path for path in zips if path.name.endswith("-linux_x64.zip"))
+
+
+@pytest.fixture(scope="session", params=["trixie", "sid"])
+def real_blender(request: pytest.FixtureRequest) -> RealBlender:
+    """Debian's Blender; the newest, from sid, only where it is asked for, for it changes from day to day."""
+    from tools.debian import DebianError
+    from tools.real_blender import RealBlender, RealBlenderError
+
+    if request.param == "sid" and not os.environ.get("RADIOSITY_BAKE_SID"):
+        pytest.skip("Debian sid's Blender is tested only with RADIOSITY_BAKE_SID=1")
+    blender = RealBlender(request.param)
+    try:
+        blender.prepare()
+    except (RealBlenderError, DebianError) as error:
+        if os.environ.get("CI") == "true":
+            raise
+        pytest.skip(f"NO REAL BLENDER ON THIS MACHINE: {error}")
+    return blender

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Build the extension's zips, one a platform, by the builder that Blender itself has, and validate them by it.
 
-The builder is a plain Python script inside the bpy wheel: this needs no Blender binary, but a Python that has bpy.
+The builder is a plain Python script inside the bpy wheel: this needs no Blender program, but an environment with bpy.
 
     .venv/main/bin/python -m tools.build [--output dist]
 """
@@ -10,7 +10,6 @@ The builder is a plain Python script inside the bpy wheel: this needs no Blender
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import subprocess
 import sys
 import tomllib
@@ -19,26 +18,25 @@ from pathlib import Path
 from .fetch_wheels import FOLDER, ROOT, WheelError, fetch
 
 DIST = ROOT / "dist"
+THIS_PYTHON = Path(sys.executable)
+BUILDER = "lib/python3.*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py"
 
 
 class BuildError(Exception):
     """The zips cannot be built, or Blender's validator refuses one."""
 
 
-def blender_builder() -> Path:
-    """Return the path of Blender's extension builder in this Python's bpy, without importing bpy."""
-    spec = importlib.util.find_spec("bpy")
-    if spec is None or spec.origin is None:
-        raise BuildError(f"{sys.executable} has no bpy, which brings Blender's builder; run `make venv` first")
-    found = list(Path(spec.origin).parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
+def blender_builder(python: Path) -> Path:
+    """Return the path of Blender's extension builder in a Python's bpy, without importing bpy."""
+    found = list(python.parents[1].glob(BUILDER))
     if len(found) != 1:
-        raise BuildError(f"expected one blender_ext.py beside {spec.origin}, found {len(found)}")
+        raise BuildError(f"{python} has no bpy, which brings Blender's builder; run `make venv` first")
     return found[0]
 
 
-def run_builder(*arguments: str) -> None:
+def run_builder(*arguments: str, python: Path = THIS_PYTHON) -> None:
     """Run one command of Blender's builder; what it prints is shown only when it fails."""
-    command = [sys.executable, str(blender_builder()), *arguments]
+    command = [str(python), str(blender_builder(python)), *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise BuildError(f"`blender_ext.py {' '.join(arguments)}` failed:\n{done.stdout}{done.stderr}")
@@ -51,9 +49,9 @@ def expected_zips(output: Path) -> list[Path]:
     return [output / f"{stem}-{platform.replace('-', '_')}.zip" for platform in manifest["platforms"]]
 
 
-def validate(path: Path) -> None:
-    """Let Blender's validator read a zip or a source folder."""
-    run_builder("validate", str(path))
+def validate(path: Path, python: Path = THIS_PYTHON) -> None:
+    """Let the validator of a Python's Blender read a zip."""
+    run_builder("validate", str(path), python=python)
 
 
 def build(output: Path = DIST) -> list[Path]:

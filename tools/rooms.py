@@ -49,7 +49,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a picture is taken from: positions in m, lens and sensor width in mm, height of the picture by its width."""
+    """Where a picture is taken from: positions in m, lens and sensor width in mm, height over width of it."""
 
     location: Point
     target: Point
@@ -156,7 +156,7 @@ def cornell_box() -> list[Surface]:
 
 
 def cornell_box_set_in() -> list[Surface]:
-    """Return the Cornell box with its lamp where it is published: in the plane of the ceiling, which has a hole there."""
+    """Return the Cornell box with its lamp where it is published: in the plane of the ceiling, in a hole of it."""
     surfaces = {surface.name: surface for surface in cornell_box()}
     ceiling, lamp = surfaces["Ceiling"], surfaces["Lamp"]
     height = ceiling.vertices[0][2]
