@@ -5,6 +5,8 @@
 Nothing here imports bpy before `register`, so that `core` can be used and tested without Blender.
 """
 
+import atexit
+
 
 def register() -> None:
     """Add the settings, operators, panels and the command to Blender."""
@@ -12,11 +14,14 @@ def register() -> None:
 
     operators.register()
     ui.register()
+    # Blender disables add-ons when it ends; the bpy module does not, and crashes over classes still registered.
+    atexit.register(unregister)
 
 
 def unregister() -> None:
     """Take everything back out, in reverse order."""
     from . import operators, ui
 
+    atexit.unregister(unregister)
     ui.unregister()
     operators.unregister()

@@ -35,8 +35,10 @@ def write_colours(mesh: bpy.types.Mesh, values: Mapping[str, Floats | None]) -> 
         attribute = mesh.color_attributes.get(name)
         if attribute is None:
             attribute = mesh.color_attributes.new(name, "FLOAT_COLOR", "CORNER")
-        if attribute.name != name:
-            mesh.color_attributes.remove(attribute)
+        # Taken names are refused by some versions of Blender and numbered by others.
+        if attribute is None or attribute.name != name:
+            if attribute is not None:
+                mesh.color_attributes.remove(attribute)
             raise AttributeNameError(
                 f'The mesh "{mesh.name}" has a vertex group named "{name}"; rename it, then bake again'
             )

@@ -3,7 +3,6 @@
 """The shell command: bake a .blend file without opening a window."""
 
 import argparse
-import atexit
 import json
 import sys
 import time
@@ -40,13 +39,10 @@ _handles = []
 def register() -> None:
     """Make `blender --command radiosity_bake` known."""
     _handles.append(bpy.utils.register_cli_command(NAME, main))
-    # A command still registered when Python ends crashes the bpy module, whose user may not think of unregistering.
-    atexit.register(unregister)
 
 
 def unregister() -> None:
     """Withdraw the command."""
-    atexit.unregister(unregister)
     while _handles:
         bpy.utils.unregister_cli_command(_handles.pop())
 

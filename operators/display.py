@@ -12,6 +12,7 @@ RADIOSITY = "Radiosity"
 IRRADIANCE = "Irradiance"
 RADIOSITY_BACK = "Radiosity Back"
 IRRADIANCE_BACK = "Irradiance Back"
+ATTRIBUTES = (RADIOSITY, IRRADIANCE, RADIOSITY_BACK, IRRADIANCE_BACK)
 
 _MARK = "radiosity_display"
 """Custom property that tells our materials from the user's, whatever they are renamed to."""

@@ -73,7 +73,8 @@ def _gather_corners(values: Floats | None, target: Target, count: int) -> Floats
 def _make_room(obj: bpy.types.Object, values: dict[str, Floats | None], journal: Journal) -> None:
     """Clear the names of our attributes: ours of an earlier bake go, a user's are renamed aside and remembered."""
     mesh, record = obj.data, obj.radiosity
-    for name, colours in values.items():
+    # Backwards, so that taking it back makes them in their order.
+    for name, colours in reversed(values.items()):
         ours = name in record.attributes
         if ours and name in mesh.color_attributes:
             remove_attribute(mesh, name, journal)

@@ -51,6 +51,7 @@ class Participants:
         self.objects = rendered_objects(view_layer)
         self.instanced_collections: set[bpy.types.Collection] = set()
         self._members: dict[bpy.types.Collection, set[bpy.types.Object]] = {}
+        self._everyone: dict[bpy.types.Collection, set[bpy.types.Object]] = {}
         pending = list(self.objects)
         while pending:
             collection = self._instanced_by(pending.pop())
@@ -59,6 +60,7 @@ class Participants:
                 self.instanced_collections.update(parts)
                 members = {obj for part in parts for obj in part.objects if not hidden_in_render(obj)}
                 self._members[collection] = {obj for obj in members if not is_output(obj)}
+                self._everyone[collection] = set(collection.all_objects)
                 pending.extend(members)
 
     @staticmethod
@@ -80,8 +82,8 @@ class Participants:
         if parent not in self.objects:
             return False
         collection = self._instanced_by(parent)
-        if collection is not None and original in collection.all_objects:
-            return original in self._members.get(collection, ())
+        if original in self._everyone.get(collection, ()):
+            return original in self._members[collection]
         # Geometry nodes instance an object whether it renders itself or not; the children of instancers must render.
         return parent.instance_type == "NONE" or not hidden_in_render(original)
 

@@ -92,12 +92,13 @@ def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def _restore_source(source, outputs, view_layer, journal: Journal) -> None:
-    selected = any(in_view_layer(output, view_layer) and output.select_get(view_layer=view_layer) for output in outputs)
+    selected = bool(_selected(outputs, view_layer))
     active = view_layer.objects.active in outputs
     for collection in {collection for output in outputs for collection in output.users_collection}:
         # The source may have been deleted from the scene; only our pointer kept it.
         if not source.users_collection:
             link(source, collection, journal)
+    journal.on_failure(_select_again, view_layer, view_layer.objects.active, _selected(outputs, view_layer))
     for output in outputs:
         discard_output(output, journal)
     record = source.radiosity
@@ -111,6 +112,17 @@ def _restore_source(source, outputs, view_layer, journal: Journal) -> None:
         select(source, True, view_layer, journal)
     if active and in_view_layer(source, view_layer):
         make_active(source, view_layer, journal)
+
+
+def _selected(objects, view_layer) -> list[bpy.types.Object]:
+    return [obj for obj in objects if in_view_layer(obj, view_layer) and obj.select_get(view_layer=view_layer)]
+
+
+def _select_again(view_layer, active, selected) -> None:
+    """Select and activate objects that are back in the view layer after they were unlinked."""
+    for obj in selected:
+        obj.select_set(True, view_layer=view_layer)
+    view_layer.objects.active = active
 
 
 def discard_output(output: bpy.types.Object, journal: Journal) -> None:
@@ -175,7 +187,9 @@ def restore_attributes(obj: bpy.types.Object, journal: Journal) -> None:
     mesh, record = obj.data, obj.radiosity
     before = (record.active_attribute, record.active_color, record.default_color)
     remember_active_attributes(mesh, journal)
-    for attribute in list(record.attributes):
+    # Backwards, so that taking it back makes them in their order.
+    for name in (name for name in reversed(display.ATTRIBUTES) if name in record.attributes):
+        attribute = record.attributes[name]
         if attribute.name in mesh.color_attributes:
             remove_attribute(mesh, attribute.name, journal)
         if attribute.aside and attribute.aside in mesh.attributes:
