@@ -1,0 +1,210 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The shell command: its files, its exit codes and its sentences."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+from radiosity_bake.operators import command
+from radiosity_bake.operators.command import main
+
+from tests.blender.making import add_cube, add_lamp_mesh, add_object, add_plane, colours_of
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def room(tmp_path, monkeypatch):
+    """Save a small lit scene as room.blend in a folder of its own, go there, and open it."""
+    add_cube()
+    add_plane("Floor").location.z = -1.0
+    add_lamp_mesh()
+    path = tmp_path / "room.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    monkeypatch.chdir(tmp_path)
+    return path
+
+
+def names():
+    return sorted(path.name for path in Path().iterdir())
+
+
+def opened(path):
+    bpy.ops.wm.open_mainfile(filepath=str(Path(path).resolve()))
+    return bpy.data.objects
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_all_meshes_that_render_are_baked_into_another_file(room, capsys):
+    before = room.read_bytes()
+    assert main(["--output", "baked.blend", "--report", "room.json"]) == 0
+    assert room.read_bytes() == before
+    assert names() == ["baked.blend", "room.blend", "room.json"]
+    report = json.loads(Path("room.json").read_text())
+    assert report["objects"] == ["Cube Radiosity", "Floor Radiosity", "Lamp Mesh Radiosity"]
+    objects = opened("baked.blend")
+    assert len(colours_of(objects["Cube Radiosity"].data)) == 72
+    output = capsys.readouterr().out
+    assert " 25%  Form factors: no rays at all" in output
+    assert "Baked 3 objects" in output
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_only_the_objects_asked_for_are_baked(room):
+    assert main(["--output", "baked.blend", "--object", "Cube", "--object", "Floor"]) == 0
+    assert {name for name in opened("baked.blend").keys() if "Radiosity" in name} == {  # noqa: SIM118
+        "Cube Radiosity",
+        "Floor Radiosity",
+    }
+
+
+def test_settings_come_from_the_options_and_else_from_the_file(room, monkeypatch):
+    seen = []
+
+    def look(scene, settings, progress):
+        from tests.blender.making import position_bake
+
+        seen.append(settings)
+        return position_bake(scene, settings, progress)
+
+    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: look)
+    bpy.context.scene.radiosity.seed = 11
+    options = "--output b.blend --threshold 0.05 --minimum-size 0.1 --quality HIGH --method UNIFORM --bake-to ORIGINAL"
+    assert main([*options.split(), "--threads", "1", "--memory-limit", "256"]) == 0
+    (settings,) = seen
+    assert (settings.threshold, settings.minimum_size, settings.seed) == (0.05, 0.1, 11)
+    assert (settings.quality, settings.method, settings.output) == ("HIGH", "UNIFORM", "ORIGINAL")
+    assert (settings.threads, settings.memory_limit) == (1, 256)
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_the_input_is_overwritten_only_when_asked(room, capsys):
+    before = room.read_bytes()
+    assert main(["--output", "room.blend"]) == 1
+    assert "--overwrite" in capsys.readouterr().err
+    assert room.read_bytes() == before
+    assert main(["--output", "room.blend", "--overwrite"]) == 0
+    assert "Cube Radiosity" in opened(room)
+    assert main(["--overwrite"]) == 0
+
+
+def fails(arguments, capsys):
+    """Return the sentence of a run that must fail before it bakes, and leaves no file behind."""
+    before = names()
+    assert main(arguments) == 1
+    assert names() == before
+    output = capsys.readouterr()
+    assert "Form factors" not in output.out
+    (line,) = output.err.strip().splitlines()
+    return line
+
+
+@pytest.mark.usefixtures("quick_bake")
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ("", "--output FILE"),
+        ("--output missing/baked.blend", "there is no folder"),
+        ("--output baked.txt", "does not end in .blend"),
+        ("--output baked.blend --report missing/room.json", "there is no folder"),
+        ("--output baked.blend --report baked.blend", "would replace a .blend file"),
+        ("--output baked.blend --report room.blend", "would replace a .blend file"),
+        ("--output baked.blend --object Nobody", 'no object "Nobody"'),
+        ("--output baked.blend --threshold 0", "Threshold is 0"),
+        ("--output baked.blend --threshold much", "invalid float value"),
+        ("--output baked.blend --quality BEST", "invalid choice"),
+        ("--output baked.blend --nonsense", "unrecognized arguments"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_one_line_before_the_bake(room, capsys, arguments, sentence):
+    assert sentence in fails(arguments.split(), capsys)
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_an_object_that_is_no_mesh_is_a_sentence(room, capsys):
+    add_object("Empty", None)
+    assert '"Empty" is not a mesh' in fails(["--output", "baked.blend", "--object", "Empty"], capsys)
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_a_read_only_output_is_a_sentence(room, capsys):
+    Path("baked.blend").write_bytes(b"old")
+    Path("baked.blend").chmod(0o444)
+    assert "is read-only" in fails(["--output", "baked.blend"], capsys)
+    assert Path("baked.blend").read_bytes() == b"old"
+
+
+def test_a_scene_without_meshes_is_a_sentence(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert "no mesh" in fails(["--output", "baked.blend"], capsys)
+
+
+def test_a_file_that_is_no_blend_file_is_a_sentence(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("room.blend").write_text("not a blend file")
+    assert main(["--output", "baked.blend"], "room.blend") == 1
+    assert "room.blend could not be read" in capsys.readouterr().err
+    assert main(["--output", "baked.blend"], "missing.blend") == 1
+    assert "There is no file missing.blend" in capsys.readouterr().err
+
+
+def test_a_failed_bake_writes_nothing(room, monkeypatch, capsys):
+    from radiosity_bake.core.errors import NoLightError
+
+    def dark(scene, settings, progress):
+        raise NoLightError("Nothing in the scene emits light")
+
+    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: dark)
+    assert "Nothing in the scene emits light" in fails(["--output", "baked.blend"], capsys)
+
+
+def test_help_explains_every_option(capsys):
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for option in ("--output", "--report", "--overwrite", "--object", "--bake-to", "--threshold", "--minimum-size"):
+        assert option in text
+    assert "blender --background room.blend --command radiosity_bake" in text
+    assert "Exit code" in text
+
+
+def test_the_command_is_registered_once_and_withdrawn():
+    assert len(command._handles) == 1
+    command.unregister()
+    assert command._handles == []
+    command.register()
+
+
+def shell(*arguments):
+    """Run `tools/bake.py` as a shell would."""
+    return subprocess.run(
+        [sys.executable, str(ROOT / "tools" / "bake.py"), *arguments], capture_output=True, text=True, timeout=120
+    )
+
+
+has_module = pytest.mark.skipif(
+    bool(bpy.app.binary_path), reason="inside Blender, Python itself cannot import bpy: --command is tested instead"
+)
+
+
+@has_module
+def test_the_module_bakes_a_file_from_the_shell(room):
+    run = shell("room.blend", "--output", "baked.blend", "--report", "room.json", "--quality", "DRAFT")
+    assert run.returncode == 0, run.stderr
+    assert "Baked 3 objects" in run.stdout
+    assert json.loads(Path("room.json").read_text())["rays"] > 0
+    assert "Cube Radiosity" in opened("baked.blend")
+
+
+@has_module
+def test_the_module_fails_with_exit_code_1_and_a_sentence(room):
+    run = shell("missing.blend", "--output", "baked.blend")
+    assert run.returncode == 1
+    assert "radiosity_bake: There is no file missing.blend" in run.stderr
+    assert "Traceback" not in run.stderr
+    run = shell()
+    assert run.returncode == 1
+    assert "Give the .blend file" in run.stderr

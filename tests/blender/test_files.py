@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files are written whole or not at all."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from radiosity_bake.operators.files import FileError, check_writable, replaced
+
+
+def names(folder):
+    return [path.name for path in folder.iterdir()]
+
+
+def test_a_file_takes_its_name_when_it_is_complete(tmp_path):
+    path = tmp_path / "room.json"
+    path.write_text("old")
+    with replaced(path) as temporary:
+        temporary.write_text("new")
+        assert temporary.parent == tmp_path
+        assert path.read_text() == "old"
+    assert path.read_text() == "new"
+    assert names(tmp_path) == ["room.json"]
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "room.json"
+    path.write_text("old")
+    with pytest.raises(ZeroDivisionError), replaced(path) as temporary:
+        temporary.write_text("half")
+        raise ZeroDivisionError
+    assert path.read_text() == "old"
+    assert names(tmp_path) == ["room.json"]
+
+
+def test_a_full_disk_is_a_sentence(tmp_path):
+    with pytest.raises(FileError, match="could not be written: No space left"), replaced(tmp_path / "room.json"):
+        raise OSError(28, "No space left on device")
+
+
+def test_checking_leaves_no_trace(tmp_path):
+    check_writable(tmp_path / "room.json", "The report")
+    assert names(tmp_path) == []
+
+
+def test_a_missing_folder_is_a_sentence(tmp_path):
+    with pytest.raises(FileError, match="there is no folder"):
+        check_writable(tmp_path / "missing" / "room.json", "The report")
+
+
+def test_a_folder_in_place_of_a_file_is_a_sentence(tmp_path):
+    with pytest.raises(FileError, match="is a folder"):
+        check_writable(tmp_path, "The report")
+
+
+def test_a_read_only_file_is_a_sentence(tmp_path):
+    path = tmp_path / "room.json"
+    path.write_text("old")
+    path.chmod(0o444)
+    with pytest.raises(FileError, match="is read-only"):
+        check_writable(path, "The report")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs a folder that nobody may write to")
+def test_a_folder_that_cannot_be_written_to_is_a_sentence():
+    with pytest.raises(FileError, match="cannot be written to"):
+        check_writable(Path("/proc/room.json"), "The report")

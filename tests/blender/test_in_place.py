@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The original output: values on the corners that the meshes have."""
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.blender.making import (
+    add_cube,
+    add_object,
+    add_plane,
+    colours_of,
+    corner_positions,
+    diffuse_material,
+    position_bake,
+)
+
+pytestmark = pytest.mark.usefixtures("quick_bake")
+
+
+def bake(*objects):
+    for obj in objects:
+        obj.select_set(True)
+        bpy.context.view_layer.objects.active = obj
+    bpy.context.scene.radiosity.output = "ORIGINAL"
+    assert bpy.ops.radiosity.bake() == {"FINISHED"}
+
+
+def warnings():
+    import json
+
+    return json.loads(bpy.context.scene.radiosity.report)["warnings"]
+
+
+@pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (-1.0, 2.0, 1.0)])
+def test_every_corner_of_the_mesh_gets_its_value(scale):
+    cube = add_cube()
+    cube.scale = scale
+    mesh = cube.data
+    bake(cube)
+    assert cube.data == mesh
+    assert len(mesh.polygons) == 6
+    assert colours_of(mesh)[:, :3] == pytest.approx(corner_positions(cube), abs=1e-6)
+    assert colours_of(mesh, "Irradiance")[:, :3] == pytest.approx(0.5 * corner_positions(cube), abs=1e-6)
+    assert warnings() == []
+
+
+def test_radiosity_is_active_for_the_viewport_and_the_renderer():
+    cube = add_cube()
+    cube.data.color_attributes.new("Paint", "BYTE_COLOR", "POINT")
+    bake(cube)
+    colours = cube.data.color_attributes
+    assert colours.active_color.name == "Radiosity"
+    assert colours[colours.render_color_index].name == "Radiosity"
+    assert "Paint" in colours
+
+
+def test_modifiers_that_keep_the_corners_need_no_transfer():
+    cube = add_cube()
+    cube.modifiers.new("Shift", "DISPLACE").strength = 0.0
+    bake(cube)
+    assert warnings() == []
+    assert colours_of(cube.data)[:, :3] == pytest.approx(corner_positions(cube), abs=1e-6)
+
+
+def test_modifiers_that_change_the_faces_are_said_and_values_come_from_the_nearest_point():
+    plane = add_plane()
+    modifier = plane.modifiers.new("Subdivision", "SUBSURF")
+    modifier.subdivision_type, modifier.levels, modifier.render_levels = "SIMPLE", 3, 3
+    bake(plane)
+    (warning,) = warnings()
+    assert '"Plane"' in warning and "modifiers" in warning
+    # The look-up goes a thousandth inwards.
+    assert colours_of(plane.data)[:, :3] == pytest.approx(corner_positions(plane), abs=2e-3)
+
+
+def test_a_transfer_keeps_to_the_side_that_the_corner_faces():
+    plane = add_plane()
+    modifier = plane.modifiers.new("Thick", "SOLIDIFY")
+    modifier.thickness, modifier.offset = 0.02, 1.0
+    bake(plane)
+    assert colours_of(plane.data)[:, 2] == pytest.approx(np.full(4, 0.02), abs=1e-4)
+
+
+def test_an_object_that_shares_its_mesh_gets_a_copy_of_its_own():
+    first = add_cube("First")
+    second = add_object("Second", first.data)
+    second.location.x = 5.0
+    mesh = first.data
+    bake(first, second)
+    assert first.data != second.data and mesh not in (first.data, second.data)
+    assert len(mesh.color_attributes) == 0
+    assert colours_of(first.data)[:, :3] == pytest.approx(corner_positions(first), abs=1e-6)
+    assert colours_of(second.data)[:, :3] == pytest.approx(corner_positions(second), abs=1e-6)
+
+
+def test_a_users_attribute_of_the_same_name_is_kept_aside():
+    cube = add_cube()
+    theirs = cube.data.color_attributes.new("Radiosity", "BYTE_COLOR", "POINT")
+    theirs.data[0].color = (1.0, 0.0, 0.0, 1.0)
+    bake(cube)
+    assert cube.data.color_attributes["Radiosity"].data_type == "FLOAT_COLOR"
+    (aside,) = (a for a in cube.data.color_attributes if a.data_type == "BYTE_COLOR")
+    assert tuple(aside.data[0].color) == (1.0, 0.0, 0.0, 1.0)
+
+
+def test_a_vertex_group_of_the_same_name_is_a_sentence_and_nothing_changes():
+    cube = add_cube()
+    cube.vertex_groups.new(name="Radiosity")
+    cube.select_set(True)
+    bpy.context.scene.radiosity.output = "ORIGINAL"
+    with pytest.raises(RuntimeError, match='vertex group named "Radiosity"'):
+        bpy.ops.radiosity.bake()
+    assert len(cube.data.color_attributes) == 0
+    assert cube.radiosity.kind == "NONE"
+
+
+def test_the_display_material_takes_all_slots_and_the_materials_are_kept():
+    red, blue = diffuse_material("Red"), diffuse_material("Blue")
+    cube = add_cube(materials=[red, blue])
+    bake(cube)
+    (material,) = {slot.material for slot in cube.material_slots}
+    assert material not in (red, blue)
+    assert (red.users, blue.users) == (1, 1)
+
+
+def test_an_object_without_slots_gets_one():
+    cube = add_cube()
+    bake(cube)
+    assert len(cube.material_slots) == 1
+
+
+def test_baking_again_uses_the_own_materials_and_keeps_what_is_remembered(monkeypatch):
+    paint = diffuse_material(colour=(0.25, 0.5, 0.75, 1.0))
+    cube = add_cube(materials=[paint])
+    bake(cube)
+    seen = []
+
+    def look(scene, settings, progress):
+        seen.append(scene)
+        return position_bake(scene, settings, progress)
+
+    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: look)
+    bake(cube)
+    assert seen[0].meshes[0].reflectance[0] == pytest.approx([0.25, 0.5, 0.75])
+    assert not np.any(seen[0].meshes[0].emission)
+    assert [slot.material for slot in cube.radiosity.slots] == [paint]
+    assert sorted(a.name for a in cube.data.color_attributes) == ["Irradiance", "Radiosity"]
+
+
+def test_values_of_the_back_are_removed_when_a_second_bake_has_none(monkeypatch):
+    plane = add_plane()
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            "radiosity_bake.operators.bake._core_bake",
+            lambda: lambda scene, settings, progress: position_bake(scene, settings, progress, back=True),
+        )
+        bake(plane)
+    assert "Radiosity Back" in plane.data.color_attributes
+    bake(plane)
+    assert "Radiosity Back" not in plane.data.color_attributes
+    assert len([m for m in bpy.data.materials if "radiosity_display" in m]) == 1

@@ -1,0 +1,203 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each kind of material does to light, and what is said about the rest."""
+
+import bpy
+import numpy as np
+import pytest
+from radiosity_bake.operators.materials import GREY, material_surface, world_radiance
+
+from tests.blender.making import (
+    diffuse_material,
+    emission_material,
+    link_surface,
+    node_material,
+    node_tree,
+    socket_of,
+    use_image,
+)
+
+
+def assert_surface(material, reflectance, emission=(0.0, 0.0, 0.0)):
+    surface = material_surface(material)
+    assert surface.reflectance == pytest.approx(np.broadcast_to(reflectance, 3), abs=1e-6)
+    assert surface.emission == pytest.approx(np.broadcast_to(emission, 3), rel=1e-6)
+    return surface.notes
+
+
+def principled(**inputs):
+    return node_material("Plastic", "ShaderNodeBsdfPrincipled", **inputs)
+
+
+def test_no_material_is_grey():
+    assert assert_surface(None, GREY) == ()
+
+
+def test_a_material_without_nodes_has_its_viewport_colour():
+    material = bpy.data.materials.new("Plain")
+    if bpy.app.version >= (5, 0, 0):
+        pytest.skip("from Blender 5.0 on every material has nodes")
+    material.diffuse_color = (0.1, 0.2, 0.3, 1.0)
+    assert assert_surface(material, (0.1, 0.2, 0.3)) == ()
+
+
+def test_principled_reflects_its_base_colour():
+    assert assert_surface(principled(Base_Color=(0.1, 0.5, 0.9, 1.0)), (0.1, 0.5, 0.9)) == ()
+
+
+def test_metal_and_glass_take_from_the_diffuse_reflectance():
+    assert_surface(principled(Base_Color=(0.8, 0.8, 0.4, 1.0), Metallic=0.75), (0.2, 0.2, 0.1))
+    assert_surface(principled(Base_Color=(0.8, 0.8, 0.4, 1.0), Transmission_Weight=0.5), (0.4, 0.4, 0.2))
+    assert_surface(principled(Metallic=1.0), 0.0)
+
+
+def test_principled_emission_is_colour_times_strength_and_not_clamped():
+    material = principled(Emission_Color=(1.0, 0.5, 0.25, 1.0), Emission_Strength=40.0, Metallic=1.0)
+    assert_surface(material, 0.0, (40.0, 20.0, 10.0))
+
+
+def test_diffuse_and_emission_shaders_are_read():
+    assert assert_surface(diffuse_material(colour=(0.2, 0.4, 0.6, 1.0)), (0.2, 0.4, 0.6)) == ()
+    assert assert_surface(emission_material(colour=(1.0, 0.5, 0.0, 1.0), strength=12.0), 0.0, (12.0, 6.0, 0.0)) == ()
+
+
+def test_a_mix_of_shaders_is_weighted_by_its_factor():
+    material = bpy.data.materials.new("Mixed")
+    tree = node_tree(material)
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    mix.inputs[0].default_value = 0.25
+    diffuse, emission = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeEmission")
+    diffuse.inputs["Color"].default_value = (0.8, 0.4, 0.0, 1.0)
+    emission.inputs["Strength"].default_value = 8.0
+    tree.links.new(diffuse.outputs[0], mix.inputs[1])
+    tree.links.new(emission.outputs[0], mix.inputs[2])
+    link_surface(tree, mix)
+    assert assert_surface(material, (0.6, 0.3, 0.0), 2.0) == ()
+
+
+def test_added_shaders_add_up():
+    material = bpy.data.materials.new("Added")
+    tree = node_tree(material)
+    add = tree.nodes.new("ShaderNodeAddShader")
+    diffuse, emission = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeEmission")
+    diffuse.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1.0)
+    emission.inputs["Strength"].default_value = 3.0
+    tree.links.new(diffuse.outputs[0], add.inputs[0])
+    tree.links.new(emission.outputs[0], add.inputs[1])
+    link_surface(tree, add)
+    assert assert_surface(material, 0.5, 3.0) == ()
+
+
+def test_nothing_linked_to_the_output_is_black_as_in_a_rendering():
+    material = bpy.data.materials.new("Open")
+    node_tree(material)
+    assert assert_surface(material, 0.0) == ()
+
+
+def test_reroutes_and_constant_nodes_are_followed():
+    material = principled()
+    tree = material.node_tree
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    colour, reroute = tree.nodes.new("ShaderNodeRGB"), tree.nodes.new("NodeReroute")
+    colour.outputs[0].default_value = (0.3, 0.2, 0.1, 1.0)
+    tree.links.new(colour.outputs[0], reroute.inputs[0])
+    tree.links.new(reroute.outputs[0], socket_of(shader, "Base Color"))
+    assert assert_surface(material, (0.3, 0.2, 0.1)) == ()
+
+
+def grouped_material(colour):
+    """Return a material whose Diffuse BSDF is in a group, its colour an input of the group node."""
+    group = bpy.data.node_groups.new("My Paint", "ShaderNodeTree")
+    group.interface.new_socket("Paint", in_out="INPUT", socket_type="NodeSocketColor")
+    group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+    inputs, outputs = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    diffuse = group.nodes.new("ShaderNodeBsdfDiffuse")
+    group.links.new(inputs.outputs[0], diffuse.inputs["Color"])
+    group.links.new(diffuse.outputs[0], outputs.inputs[0])
+    material = bpy.data.materials.new("Grouped")
+    tree = node_tree(material)
+    node = tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = group
+    node.inputs[0].default_value = colour
+    link_surface(tree, node)
+    return material
+
+
+def test_a_group_of_nodes_is_entered_and_its_inputs_count():
+    assert assert_surface(grouped_material((0.7, 0.1, 0.2, 1.0)), (0.7, 0.1, 0.2)) == ()
+
+
+def test_a_muted_mix_passes_its_first_shader_on():
+    material = diffuse_material(colour=(0.2, 0.4, 0.6, 1.0))
+    tree = material.node_tree
+    diffuse = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(diffuse.outputs[0], mix.inputs[1])
+    mix.mute = True
+    link_surface(tree, mix)
+    assert_surface(material, (0.2, 0.4, 0.6))
+
+
+def test_a_textured_colour_counts_as_its_sockets_colour_and_is_named():
+    material = principled(Base_Color=(0.6, 0.5, 0.4, 1.0))
+    use_image(material)
+    (note,) = assert_surface(material, (0.6, 0.5, 0.4))
+    assert "Base Color" in note and "Image Texture" in note
+
+
+def test_a_texture_on_an_input_that_plays_no_part_is_not_mentioned():
+    material = principled()
+    use_image(material, "Roughness")
+    assert material_surface(material).notes == ()
+
+
+def test_a_glossy_shader_reflects_no_diffuse_light_and_is_named():
+    (note,) = assert_surface(node_material("Mirror", "ShaderNodeBsdfAnisotropic"), 0.0)
+    assert "Glossy" in note
+
+
+def test_an_unknown_shader_is_grey_rather_than_black_and_is_named():
+    (note,) = assert_surface(node_material("Hair", "ShaderNodeEeveeSpecular"), GREY)
+    assert "Specular" in note
+
+
+def test_a_colour_brighter_than_white_is_white():
+    (note,) = assert_surface(diffuse_material(colour=(2.0, 0.5, -1.0, 1.0)), (1.0, 0.5, 0.0))
+    assert "white" in note
+
+
+def test_no_world_is_dark():
+    radiance, notes = world_radiance(None)
+    assert radiance.tolist() == [0.0, 0.0, 0.0]
+    assert notes == ()
+
+
+def test_a_constant_background_is_colour_times_strength():
+    world = bpy.data.worlds.new("Sky")
+    tree = node_tree(world)
+    background = tree.nodes.new("ShaderNodeBackground")
+    background.inputs["Color"].default_value = (0.5, 0.25, 1.0, 1.0)
+    background.inputs["Strength"].default_value = 2.0
+    link_surface(tree, background)
+    radiance, notes = world_radiance(world)
+    assert radiance == pytest.approx([1.0, 0.5, 2.0])
+    assert notes == ()
+
+
+def test_a_world_without_nodes_has_its_colour():
+    if bpy.app.version >= (5, 0, 0):
+        pytest.skip("from Blender 5.0 on every world has nodes")
+    world = bpy.data.worlds.new("Plain")
+    world.color = (0.1, 0.2, 0.3)
+    assert world_radiance(world)[0] == pytest.approx([0.1, 0.2, 0.3])
+
+
+def test_a_textured_world_is_left_dark_and_named():
+    world = bpy.data.worlds.new("Photo")
+    tree = node_tree(world)
+    background, image = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeTexEnvironment")
+    tree.links.new(image.outputs[0], background.inputs["Color"])
+    link_surface(tree, background)
+    radiance, (note,) = world_radiance(world)
+    assert radiance.tolist() == [0.0, 0.0, 0.0]
+    assert "Environment Texture" in note and "dark" in note
