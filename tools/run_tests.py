@@ -71,6 +71,18 @@ def pytest_stage(name: str, environment: Environment, *arguments: str) -> Stage:
     return Stage(name, lambda: command)
 
 
+def types_command(environment: Environment) -> Callable[[], list[str] | None]:
+    """Check the types of `core`, against a numpy that has them."""
+
+    def command() -> list[str] | None:
+        if environment.python_version == "3.11":
+            print("Types are checked with Python 3.13: the numpy of Blender 4.2 has only some.", flush=True)
+            return None
+        return [str(environment.python), "-m", "mypy", "core"]
+
+    return command
+
+
 def real_blender_command(stage_name: str) -> Callable[[], list[str] | None]:
     """Run tests/blender inside Debian's Blender, where that can be had."""
 
@@ -94,7 +106,7 @@ def all_stages() -> list[Stage]:
     stages = [
         Stage("lint: ruff format", tool("ruff", "format", "--check", "."), has_tests=False),
         Stage("lint: ruff check", tool("ruff", "check", "."), has_tests=False),
-        Stage("lint: mypy core", tool("mypy", "core"), has_tests=False),
+        Stage("lint: mypy core", types_command(newest), has_tests=False),
     ]
     stages += [pytest_stage(f"core {each.name}", each, "tests/core") for each in environments]
     stages += [pytest_stage(f"blender {each.name}", each, "tests/blender") for each in environments]

@@ -46,16 +46,17 @@ def play(window):
 def cancel(window, settings):
     """Esc ends a bake that takes minutes at once, and nothing was changed."""
     before = meshes()
-    settings.quality, settings.method, settings.minimum_size = "HIGH", "UNIFORM", 0.004
+    settings.quality, settings.method, settings.minimum_size = "HIGH", "UNIFORM", 0.002
     yield from window.click_operator("radiosity.bake")
     yield from window.until(lambda: window.is_running("radiosity.bake"))
-    yield from window.settle(20)
+    yield from window.settle(10)
     assert window.is_running("radiosity.bake"), "the bake was to be cancelled, but is over already"
     yield from window.screenshot("2_running")
     pressed = time.monotonic()
     window.key("Escape")
     yield from window.until(lambda: not window.is_running("radiosity.bake"))
-    print(f"Esc ended the bake after {time.monotonic() - pressed:.2f} s")
+    # Half a second is promised; the rest is for the mouse and keyboard of a virtual screen on a busy machine.
+    assert time.monotonic() - pressed < 2.0
     assert meshes() == before
     assert not baked()
     assert not settings.report
