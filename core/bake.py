@@ -16,14 +16,14 @@ from .clock import Clock
 from .direct import strongest_emitters
 from .error_estimate import relative_error
 from .errors import NoLightError
-from .gather import Gathered, GatherRays, fill_hidden, gather
+from .gather import Gathered, GatherRays, corner_values, gather
 from .output import baked_meshes
 from .patches import coarse_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers, receivers
 from .result import BakeResult
-from .scene import Ints, Scene
+from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
 from .solve import Solution, solve_balance
 from .subdivision import Faces, conforming_faces, input_faces
@@ -82,23 +82,23 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         raise NoLightError("Nothing in the scene emits light; give a material some Emission, or the World a colour")
     rays = RayScene(surfaces.points, surfaces.triangles, settings.threads)
     lit = lit_sides(surfaces, rays, settings.seed)
-    solid = surfaces.closed & ~lit[:, 1]
 
     clock.start("Coarse patches", 0.02, 0.03)
     smallest = settings.minimum_size or automatic_size(surfaces, effort)
     tree = coarse_patches(surfaces, smallest)
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
     per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
-    transport = Transport(surfaces, tree, rays, solid, per_row, settings.seed)
+    transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
 
     clock.start("Form factors", 0.03, 0.4)
     rounds = subdivide(transport, lit, settings, smallest, most_rays // per_row, clock)
 
     clock.start("Solving", 0.4, 0.5)
+    cover = transport.separate_cover(clock.report)
     shares = transport.shares()
-    emitters = strongest_emitters(surfaces, solid)
-    balance = balance_of(transport, shares)
-    direct = direct_on_patches(transport, balance, emitters, clock.report)
+    emitters = strongest_emitters(surfaces, lit)
+    balance = balance_of(transport, cover, shares)
+    direct = direct_on_patches(transport, cover, balance, emitters, clock.report)
     solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas)
     check_solved(solution, surfaces)
     traced = rays.rays
@@ -109,11 +109,11 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     places = receivers(surfaces, faces, face, side)
     radiance = seen_radiance(transport, balance, solution, emitters)
     gathered = gather(transport, radiance, emitters, places, effort.gather, clock.report)
-    irradiance = fill_hidden(gathered.irradiance, gathered, places.of_corner)
+    irradiance = corner_values(gathered, places.of_corner)
 
     clock.start("Reconstructing", 0.97, 1.0)
-    meshes, warnings = baked_meshes(scene, surfaces, faces, face, side, irradiance[places.of_corner], settings.output)
-    error = surface_error(surfaces, faces, face, side, places, gathered)
+    meshes, warnings = baked_meshes(scene, surfaces, faces, face, side, irradiance, settings.output)
+    error = surface_error(surfaces, faces, face, places, gathered, irradiance)
     clock.stop()
     report: dict[str, Any] = {
         "patches": len(tree.leaves()),
@@ -186,13 +186,12 @@ def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tu
 
 
 def surface_error(
-    surfaces: Surfaces, faces: Faces, face: Ints, side: Ints, places: Receivers, gathered: Gathered
+    surfaces: Surfaces, faces: Faces, face: Ints, places: Receivers, gathered: Gathered, irradiance: Floats
 ) -> float:
     """Estimated relative RMS error over what was baked, emitters and hidden places left out."""
-    hidden = gathered.buried | gathered.enclosed
-    counted = ~surfaces.emission[faces.triangle[face]].any(axis=1) & ~hidden[places.of_corner].any(axis=1)
+    counted = ~surfaces.emission[faces.triangle[face]].any(axis=1) & ~gathered.hidden[places.of_corner].all(axis=1)
     corners = faces.points[faces.corners[face]]
-    return relative_error(corners, places.of_corner, gathered.irradiance, gathered.noise, counted)
+    return relative_error(corners, places.of_corner, irradiance, gathered.noise, counted)
 
 
 def limit_warnings(rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort) -> list[str]:

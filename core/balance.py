@@ -15,7 +15,7 @@ from .gather import Radiance
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
-from .transport import ESCAPED, Shares, Transport, sample_points
+from .transport import ESCAPED, Cover, Shares, Transport, sample_points
 
 POINTS_PER_PATCH = 4
 """Points of a patch at which direct light is computed for the transport."""
@@ -26,11 +26,14 @@ SHADOW_RAYS_PER_POINT = 8
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """The traced elements, numbered 0 to m - 1, and their form factors.
+    """The traced elements and twins, numbered 0 to m - 1, and their form factors.
 
     Attributes
     ----------
     elements : (m,) int
+        Elements, and twins of those that are covered in part.
+    base : (m,) int
+        The element itself, or the one that a twin is part of.
     exchange : Exchange
     escape : (m,) float
         Share of each element's rays that leave the scene.
@@ -42,6 +45,7 @@ class Balance:
     """
 
     elements: Ints
+    base: Ints
     exchange: Exchange
     escape: Floats
     areas: Floats
@@ -50,23 +54,29 @@ class Balance:
     emission: Floats
 
 
-def balance_of(transport: Transport, shares: Shares) -> Balance:
+def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     """Number the traced elements and sort their form factors into what is exchanged and what escapes."""
     surfaces, tree = transport.surfaces, transport.tree
-    elements = np.flatnonzero(transport.has_row())
-    number = np.full(2 * len(tree), -1, dtype=np.int64)
+    traced = np.flatnonzero(transport.has_row())
+    twins = cover.first_twin + np.arange(len(cover.element))
+    elements, base = np.concatenate([traced, twins]), np.concatenate([traced, cover.element])
+    number = np.full(cover.first_twin + len(twins), -1, dtype=np.int64)
     number[elements] = np.arange(len(elements))
     lost = shares.source == ESCAPED
     escape = np.zeros(len(elements))
     escape[number[shares.receiver[lost]]] = shares.share[lost]
-    nodes, triangle = elements >> 1, tree.triangle[elements >> 1]
-    a, b, c = (tree.points[tree.corners[nodes, k]] for k in range(3))
-    buried = transport.buried_share()[elements]
+    buried = transport.buried_share()[base]
+    share = np.ones(len(elements))
+    share[number[twins]] = cover.covered.mean(axis=1)
+    share[number[cover.element]] -= cover.covered.mean(axis=1)
+    a, b, c = (tree.points[tree.corners[base >> 1, k]] for k in range(3))
+    triangle = tree.triangle[base >> 1]
     return Balance(
         elements,
+        base,
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
-        np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried),
+        np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried) * share,
         buried,
         surfaces.reflectance[triangle],
         surfaces.emission[triangle],
@@ -83,43 +93,58 @@ def explicit_emission(transport: Transport, balance: Balance, emitters: Emitters
     """The emission of elements that is left to rays: zero where the emitter is sampled explicitly, (m, 3)."""
     explicit = np.zeros(len(transport.surfaces.triangles), dtype=bool)
     explicit[emitters.triangle] = True
-    triangle = transport.tree.triangle[balance.elements >> 1]
-    return np.where(explicit[triangle][:, None], 0.0, balance.emission)
+    return np.where(explicit[transport.tree.triangle[balance.base >> 1]][:, None], 0.0, balance.emission)
 
 
 def direct_on_patches(
-    transport: Transport, balance: Balance, emitters: Emitters, report: Callable[[float], None]
+    transport: Transport, cover: Cover, balance: Balance, emitters: Emitters, report: Callable[[float], None]
 ) -> Floats:
     """Irradiance over pi of each element that is not reflected radiance: emitters and the world, (m, 3)."""
-    surfaces, tree, seed = transport.surfaces, transport.tree, transport.seed
-
-    def work(first: int, last: int) -> Floats:
-        elements = balance.elements[first:last]
-        points, normals = sample_points(surfaces, tree, elements, POINTS_PER_PATCH, seed + 51)
-        keys = (elements[:, None] * POINTS_PER_PATCH + np.arange(POINTS_PER_PATCH)).ravel()
-        points, normals = points.reshape(-1, 3), normals.reshape(-1, 3)
-        light, _ = direct_irradiance(
-            emitters, transport.rays, points, normals, normals, keys, SHADOW_RAYS_PER_POINT, seed + 52
-        )
-        return light.reshape(-1, POINTS_PER_PATCH, 3).mean(axis=1)
-
-    rays_each = POINTS_PER_PATCH * SHADOW_RAYS_PER_POINT
-    parts = transport.rays.map(work, len(balance.elements), rays_each, report)
-    direct = np.concatenate(parts) if parts else np.zeros((0, 3))
+    number = np.full(cover.first_twin + len(cover.element), -1, dtype=np.int64)
+    number[balance.elements] = np.arange(len(balance.elements))
+    direct = np.zeros((len(balance.elements), 3))
+    whole = np.flatnonzero((balance.elements == balance.base) & (cover.twin[balance.base] < 0))
+    elements = balance.elements[whole]
+    points, normals = sample_points(transport.surfaces, transport.tree, elements, POINTS_PER_PATCH, transport.seed + 51)
+    direct[whole] = _direct_at(transport, emitters, elements, points, normals, report).mean(axis=1)
+    if len(cover.element):
+        light = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
+        for rows, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
+            direct[number[rows]] = (light * chosen[..., None]).sum(axis=1) / chosen.sum(axis=1)[:, None]
     # Points inside a solid see no light; the mean is over the others.
     direct /= np.maximum(1.0 - balance.buried, 1.0 / POINTS_PER_PATCH)[:, None]
     by_rays = balance.exchange.apply(explicit_emission(transport, balance, emitters))
-    return direct + by_rays + balance.escape[:, None] * surfaces.world
+    return direct + by_rays + balance.escape[:, None] * transport.surfaces.world
+
+
+def _direct_at(
+    transport: Transport,
+    emitters: Emitters,
+    elements: Ints,
+    points: Floats,
+    normals: Floats,
+    report: Callable[[float], None],
+) -> Floats:
+    """Direct light at points of elements, (k, p, 3) each."""
+    count = points.shape[1]
+
+    def work(first: int, last: int) -> Floats:
+        at, axis = points[first:last].reshape(-1, 3), normals[first:last].reshape(-1, 3)
+        keys = (elements[first:last, None] * count + np.arange(count)).ravel()
+        light, _ = direct_irradiance(
+            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52
+        )
+        return light.reshape(-1, count, 3)
+
+    parts = transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)
+    return np.concatenate([np.zeros((0, count, 3)), *parts])
 
 
 def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Radiance:
     """What gather rays see on each element: reflected light, and emission that is not sampled explicitly."""
-    size = 2 * len(transport.tree)
-    values, dark = np.zeros((size, 3)), np.zeros(size, dtype=bool)
+    values = np.zeros((max(2 * len(transport.tree), int(balance.elements.max(initial=0)) + 1), 3))
     values[balance.elements] = solution.reflected + explicit_emission(transport, balance, emitters)
-    unlit = ~(solution.reflected + balance.emission).any(axis=1)
-    dark[balance.elements] = unlit & (balance.reflectance.any(axis=1) | (balance.elements & 1 == 1))
-    return Radiance.of(values, dark, transport.surfaces.world)
+    return Radiance.of(values, transport.surfaces.world)
 
 
 def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:

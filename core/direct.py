@@ -54,13 +54,13 @@ class Emitters:
     one_sided: NDArray[np.bool_]
 
 
-def strongest_emitters(surfaces: Surfaces, solid: NDArray[np.bool_]) -> Emitters:
+def strongest_emitters(surfaces: Surfaces, lit: NDArray[np.bool_]) -> Emitters:
     """Choose the emitters that rays would sample worst: by area times squared radiance, as their variance goes.
 
     Parameters
     ----------
-    solid : (shells,) bool
-        Shells whose inside is out of reach.
+    lit : (shells, 2) bool
+        Sides that light reaches: what emits into the inside of a solid is of no use.
     """
     luminance = surfaces.emission @ LUMINANCE
     weight = surfaces.areas * luminance**2
@@ -72,7 +72,7 @@ def strongest_emitters(surfaces: Surfaces, solid: NDArray[np.bool_]) -> Emitters
         surfaces.normals[chosen],
         surfaces.areas[chosen],
         surfaces.emission[chosen],
-        solid[surfaces.shell_of_triangle[chosen]],
+        ~lit[surfaces.shell_of_triangle[chosen], 1],
     )
 
 

@@ -40,12 +40,12 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     corners : (f, 3, 3) float, scene units
     of_corner : (f, 3) int
         Receivers of the corners: faces that share two are neighbours.
-    values : (n,) float
-        At the receivers.
+    values : (f, 3) float
+        At the corners.
     """
-    gradient = gradients(corners, values[of_corner])
+    gradient = gradients(corners, values)
     start, end = of_corner.ravel(), np.roll(of_corner, -1, axis=1).ravel()
-    key = np.minimum(start, end) * np.int64(len(values)) + np.maximum(start, end)
+    key = np.minimum(start, end) * np.int64(of_corner.max() + 1) + np.maximum(start, end)
     face = np.repeat(np.arange(len(corners)), 3)
     order = np.argsort(key, kind="stable")
     pair = np.flatnonzero(key[order][1:] == key[order][:-1])
@@ -66,8 +66,10 @@ def relative_error(corners: Floats, of_corner: Ints, irradiance: Floats, noise: 
     ----------
     corners : (f, 3, 3) float
     of_corner : (f, 3) int
-    irradiance : (n, 3) float
+    irradiance : (f, 3, 3) float
+        At the corners.
     noise : (n,) float
+        Of the receivers.
     counted : (f,) bool
         Faces that count (emitters and buried ones do not).
     """
@@ -79,5 +81,5 @@ def relative_error(corners: Floats, of_corner: Ints, irradiance: Floats, noise: 
     missed = interpolation_error(corners, of_corner, luminance)
     # Noise is independent from vertex to vertex; a linear mix of three keeps half of its variance on average.
     square = missed**2 + (noise[of_corner] ** 2).mean(axis=1) / 2.0
-    mean = float((weight * luminance[of_corner].mean(axis=1)).sum())
+    mean = float((weight * luminance.mean(axis=1)).sum())
     return float(np.sqrt((weight * square).sum()) / mean) if mean > 0.0 else 0.0

@@ -14,8 +14,11 @@ from .direct import LUMINANCE, Emitters, direct_irradiance
 from .receivers import Receivers
 from .sampling import Patterns, Singles, frames
 from .scene import Floats, Ints
-from .transport import BURIED, ESCAPED, Transport
+from .transport import BURIED, COVER_GAP, ESCAPED, Transport
 from .visibility import OFFSET
+
+LEAST_COVERED_SHARE = 0.9
+"""A receiver is covered when more of its rays than this end within `COVER_GAP` of its faces' size."""
 
 LEAST_VALID_SHARE = 0.5
 """A receiver is buried when fewer of its rays than this left it outside a solid; from an outside point all do."""
@@ -50,23 +53,18 @@ class Radiance:
 
     Attributes
     ----------
-    values : (2 * nodes + 3, 3) float32, W m^-2 sr^-1
+    values : (elements + 3, 3) float32, W m^-2 sr^-1
         By element; the last three stand for `BELOW`, `BURIED` and `ESCAPED`, which index from the end.
-    dark : (2 * nodes + 3,) bool
-        Surfaces that would reflect light and have none, and insides of solids.
     """
 
     values: Singles
-    dark: NDArray[np.bool_]
 
     @staticmethod
-    def of(elements: Floats, dark: NDArray[np.bool_], world: Floats) -> Radiance:
-        """Join the radiance of elements (2 * nodes, 3) with that of the world (3,)."""
+    def of(elements: Floats, world: Floats) -> Radiance:
+        """Join the radiance of elements (2 * nodes and twins, 3) with that of the world (3,)."""
         values = np.concatenate([elements, np.zeros((3, 3))])
         values[ESCAPED] = world
-        seen_dark = np.concatenate([dark, np.ones(3, dtype=bool)])
-        seen_dark[ESCAPED] = False
-        return Radiance(values.astype(np.float32), seen_dark)
+        return Radiance(values.astype(np.float32))
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,16 +77,13 @@ class Gathered:
         Irradiance over pi.
     noise : (n,) float
         Standard error of its luminance, from two halves of the rays.
-    buried : (n,) bool
-        Receivers inside a solid, where nothing can be seen and the value means nothing.
-    enclosed : (n,) bool
-        Receivers that get no light and see nothing but unlit surfaces, such as a floor under a box without a bottom.
+    hidden : (n,) bool
+        Receivers that nothing but what hides them can see: inside a solid, or covered so closely.
     """
 
     irradiance: Floats
     noise: Floats
-    buried: NDArray[np.bool_]
-    enclosed: NDArray[np.bool_]
+    hidden: NDArray[np.bool_]
 
 
 def gather(
@@ -104,23 +99,19 @@ def gather(
 
     patterns = Patterns.make(0, counts.hemisphere, transport.seed + 101)
 
-    def indirect(first: int, last: int) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         return _indirect_part(transport, radiance, receivers, slice(first, last), patterns)
 
     parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
-    valid, dark = np.concatenate([p[2] for p in parts]), np.concatenate([p[3] for p in parts])
-
+    hidden = np.concatenate([p[2] for p in parts])
     direct = _direct(transport, emitters, receivers, np.arange(total), counts, report)
-    irradiance = means + direct
-    buried = valid < LEAST_VALID_SHARE
-    enclosed = dark & ~buried & ~(irradiance > 0.0).any(axis=1)
-    return Gathered(irradiance, noise, buried, enclosed)
+    return Gathered(means + direct, noise, hidden)
 
 
 def _indirect_part(
     transport: Transport, radiance: Radiance, receivers: Receivers, part: slice, patterns: Patterns
-) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
     rays = patterns.directions.shape[1]
     pattern, angle = patterns.choose(receivers.keys[part], transport.seed + 101)
     directions = (patterns.directions[pattern] @ frames(receivers.normals[part], angle)).reshape(-1, 3)
@@ -129,17 +120,15 @@ def _indirect_part(
     count = len(lift)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.
     above = (directions.reshape(count, rays, 3) @ lift[:, :, None]).ravel() > 0.0
-    elements = np.full(count * rays, BELOW, dtype=np.int32)
-    if above.all():
-        elements, _, _, _ = transport.look(origins, directions)
-    else:
-        elements[above], _, _, _ = transport.look(origins[above], directions[above])
+    elements, distance = np.full(count * rays, BELOW, dtype=np.int32), np.full(count * rays, np.inf, dtype=np.float32)
+    elements[above], _, _, distance[above] = transport.look(origins[above], directions[above])
     seen = radiance.values[elements].reshape(count, rays, 3)
     valid = rays - (elements == BURIED).reshape(count, rays).sum(axis=1)
     means = seen.sum(axis=1, dtype=np.float64) / np.maximum(valid, 1)[:, None]
     half = seen[:, : rays // 2].mean(axis=1) - seen[:, rays // 2 :].mean(axis=1)
-    dark = radiance.dark[elements].reshape(count, rays).all(axis=1)
-    return means, np.abs(half @ LUMINANCE) / 2.0, valid / rays, dark
+    reach = COVER_GAP * transport.rays.scale * receivers.sizes[part]
+    covered = (distance.reshape(count, rays) < reach[:, None]).mean(axis=1) > LEAST_COVERED_SHARE
+    return means, np.abs(half @ LUMINANCE) / 2.0, covered | (valid < LEAST_VALID_SHARE * rays)
 
 
 def _direct(
@@ -177,36 +166,26 @@ def _direct(
     return direct
 
 
-def fill_hidden(values: Floats, gathered: Gathered, of_corner: Ints) -> Floats:
-    """Give receivers that cannot be seen the mean of their neighbours' values, so that no dark rim shows at a foot.
+def corner_values(gathered: Gathered, of_corner: Ints) -> Floats:
+    """Irradiance at face corners, (f, 3, 3), without the dark or bright rim that hidden vertices would draw.
 
-    Buried receivers are filled however deep they lie; enclosed ones only next to a lit one, since the dark room behind
-    a wall is enclosed too.
+    A face that is hidden at some corners and seen at others shows the seen ones' light to its end: at a hidden corner
+    it takes the mean of what such faces show at their other corners. Faces hidden altogether keep what was gathered.
 
     Parameters
     ----------
-    values : (n, c) float
     of_corner : (f, 3) int
-        Receivers of each face's corners: neighbours share a face.
+        Receivers of each face's corners.
     """
-    values = values.copy()
-    known = ~(gathered.buried | gathered.enclosed)
-    values[gathered.buried] = 0.0
-    ring = gathered.buried | gathered.enclosed
-    while True:
-        near = known[of_corner]
-        mixed = near.any(axis=1) & ~near.all(axis=1)
-        faces, near = of_corner[mixed], near[mixed]
-        if len(faces) == 0:
-            return values
-        face_sum = np.einsum("fk,fkc->fc", near, values[faces])
-        target, member = faces[~near], np.nonzero(~near)[0]
-        count = np.bincount(target, weights=near.sum(axis=1)[member], minlength=len(values))
-        new = (count > 0) & ring
-        if not new.any():
-            return values
-        for channel in range(values.shape[1]):
-            total = np.bincount(target, weights=face_sum[member, channel], minlength=len(values))
-            values[new, channel] = total[new] / count[new]
-        known |= new
-        ring = gathered.buried & ~known
+    values = gathered.irradiance[of_corner]
+    hidden = gathered.hidden[of_corner]
+    mixed = np.flatnonzero(hidden.any(axis=1) & ~hidden.all(axis=1))
+    unseen, corners = hidden[mixed], of_corner[mixed]
+    shown = np.einsum("fk,fkc->fc", ~unseen, values[mixed]) / (~unseen).sum(axis=1)[:, None]
+    face, corner = np.nonzero(unseen)
+    target, size = corners[face, corner], len(gathered.hidden)
+    count = np.maximum(np.bincount(target, minlength=size), 1)
+    for channel in range(values.shape[2]):
+        mean = np.bincount(target, weights=shown[face, channel], minlength=size) / count
+        values[mixed[face], corner, channel] = mean[target]
+    return values

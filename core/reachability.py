@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which sides of which shells light can reach: a few thousand random walks from the emitters.
+"""Which sides of which shells light can reach: a few thousand random walks from the emitters and the world.
 
-A closed mesh may be a solid, whose inside no light enters, or a room seen from within; only the light can tell. Rays
-that start inside a solid (a floor that runs on under a block) are recognised by it and dropped.
+A closed mesh may be a solid, whose inside no light enters, or a room seen from within; a box without a bottom on a floor
+is as good as a solid. Only the light can tell. Rays that meet an unreached side started inside a solid (on a floor that
+runs on under a block) and are dropped.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,50 +26,106 @@ WALKS = 16384
 LONGEST_WALK = 16
 
 LEAST_VISITS = 3
-"""Visits that make the inside of a closed mesh lit: one or two may be rays that slipped through an edge."""
+"""Visits that make a side lit: one or two may be rays that slipped through an edge."""
+
+EXPECTED_VISITS = 20.0
+"""Visits to be expected by its area without which an open shell is too small for its unvisited sides to mean anything."""
 
 
 def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_]:
     """Whether light reaches the front and the back of each shell, (shells, 2) bool."""
-    visits = np.zeros((len(surfaces.closed), 2))
-    triangle, back = _start(surfaces, seed)
-    square = hashed(np.arange(len(triangle)), 2, seed + 1)
-    weights = triangle_weights(square)
-    inward = _self_lit(surfaces)[surfaces.shell_of_triangle[triangle]] & back
-    for bounce in range(LONGEST_WALK):
-        if len(triangle) == 0:
-            break
-        normal = surfaces.normals[triangle] * np.where(back, -1.0, 1.0)[:, None]
-        a, b, c = (surfaces.points[surfaces.triangles[triangle, k]] for k in range(3))
-        origin = a + (b - a) * weights[:, :1] + (c - a) * weights[:, 1:]
-        turn = hashed(np.arange(len(triangle)) + WALKS * (bounce + 1), 2, seed)
-        direction = cosine_directions(turn, normal)
-        start = rays.local(origin) + (normal * OFFSET).astype(np.float32)
-        hits = rays.first_hits(start, direction.astype(np.float32))
-        met = hits.triangle >= 0
-        if bounce == 0:
-            shell_before = surfaces.shell_of_triangle[triangle]
-            met &= ~(inward & (surfaces.shell_of_triangle[hits.triangle] == shell_before))
-        triangle, weights = hits.triangle[met].astype(np.int64), hits.weights[met].astype(np.float64)
-        back = hits.back[met]
-        np.add.at(visits, (surfaces.shell_of_triangle[triangle], back.astype(np.int64)), 1.0)
-        reflecting = surfaces.reflectance[triangle].any(axis=1)
-        triangle, weights, back = triangle[reflecting], weights[reflecting], back[reflecting]
-    lit = visits >= np.where(surfaces.closed, LEAST_VISITS, 1)[:, None]
+    shells = len(surfaces.closed)
+    visits = _visits(surfaces, rays, _from_emitters(surfaces, rays, seed), seed)
     if surfaces.world.any():
-        lit[:, 0] = True
-        lit[~surfaces.closed, 1] = True
+        visits += _visits(surfaces, rays, _from_world(surfaces, rays, seed), seed + 7)
+    area = np.bincount(surfaces.shell_of_triangle, weights=surfaces.areas, minlength=shells)
+    expected = visits.sum() * area / area.sum()
+    lit = visits >= LEAST_VISITS
+    # What is too small to judge is taken as it most likely is: a solid where closed, lit on both sides where open.
+    small = expected < EXPECTED_VISITS
+    lit[small, 0] = True
+    lit[small & ~surfaces.closed, 1] = True
+    emits = np.bincount(surfaces.shell_of_triangle, weights=surfaces.emission.any(axis=1), minlength=shells) > 0
+    lit[emits, 0] = True
+    lit[emits & ~surfaces.closed, 1] = True
+    # A shell that no light reaches at all shows its front, black.
+    lit[~lit.any(axis=1), 0] = True
     return lit
 
 
-def _start(surfaces: Surfaces, seed: int) -> tuple[Ints, NDArray[np.bool_]]:
-    """Emitting triangles in proportion to their power, and the side that each walk leaves from."""
+@dataclass(frozen=True, eq=False)
+class Walks:
+    """Where walks are under way: on a side of a triangle (-1: outside of the scene).
+
+    Attributes
+    ----------
+    triangle : (n,) int
+    back : (n,) bool
+    origin, direction : (n, 3) float
+    """
+
+    triangle: Ints
+    back: NDArray[np.bool_]
+    origin: Floats
+    direction: Floats
+
+
+def _visits(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int) -> Floats:
+    """Times that walks met the front and the back of each shell, (shells, 2)."""
+    visits = np.zeros((len(surfaces.closed), 2))
+    shell = surfaces.shell_of_triangle
+    inward = (walks.triangle >= 0) & _self_lit(surfaces)[shell[walks.triangle]] & walks.back
+    left = walks.triangle
+    for bounce in range(LONGEST_WALK):
+        if len(walks.triangle) == 0:
+            break
+        hits = rays.first_hits(rays.local(walks.origin), walks.direction.astype(np.float32))
+        met = hits.triangle >= 0
+        if bounce == 0:
+            met &= ~(inward & (shell[hits.triangle] == shell[left]))
+        triangle, back = hits.triangle[met].astype(np.int64), hits.back[met]
+        np.add.at(visits, (shell[triangle], back.astype(np.int64)), 1.0)
+        reflecting = surfaces.reflectance[triangle].any(axis=1)
+        weights = hits.weights[met].astype(np.float64)[reflecting]
+        walks = _leaving(surfaces, rays, triangle[reflecting], back[reflecting], weights, seed + bounce + 10)
+    return visits
+
+
+def _leaving(
+    surfaces: Surfaces, rays: RayScene, triangle: Ints, back: NDArray[np.bool_], weights: Floats, seed: int
+) -> Walks:
+    """Walks that leave sides of triangles at barycentric weights (n, 2), with cosine distribution."""
+    normal = side_normals(surfaces.normals[triangle], back)
+    a, b, c = (surfaces.points[surfaces.triangles[triangle, k]] for k in range(3))
+    origin = a + (b - a) * weights[:, :1] + (c - a) * weights[:, 1:] + normal * (OFFSET / rays.scale)
+    return Walks(triangle, back, origin, cosine_directions(hashed(np.arange(len(triangle)), 2, seed), normal))
+
+
+def _from_emitters(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
+    """Walks from emitting triangles in proportion to their power, from both sides."""
     power = np.cumsum(surfaces.areas * (surfaces.emission @ LUMINANCE))
-    if len(power) == 0 or power[-1] <= 0.0:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
+    if power[-1] <= 0.0:
+        nothing = np.zeros((0, 3))
+        return Walks(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool), nothing, nothing)
     step = (np.arange(WALKS) + 0.5) / WALKS * power[-1]
     triangle = np.minimum(np.searchsorted(power, step, side="right"), len(power) - 1)
-    return triangle, hashed(np.arange(WALKS), 1, seed + 2)[:, 0] < 0.5
+    drawn = hashed(np.arange(WALKS), 3, seed + 1)
+    weights = triangle_weights(drawn[:, 1:3])
+    return _leaving(surfaces, rays, triangle, drawn[:, 0] < 0.5, weights, seed + 2)
+
+
+def _from_world(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
+    """Walks inward from a sphere around the scene: with cosine distribution they cross it evenly from everywhere."""
+    drawn = hashed(np.arange(WALKS), 4, seed + 3)
+    z, turn = 1.0 - 2.0 * drawn[:, 0], 2.0 * np.pi * drawn[:, 1]
+    flat = np.sqrt(np.maximum(0.0, 1.0 - z * z))
+    outward = np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
+    used = surfaces.points[surfaces.triangles.ravel()]
+    low, high = used.min(axis=0), used.max(axis=0)
+    radius = 0.5 * float(np.linalg.norm(high - low)) * 1.01
+    outside = np.full(WALKS, -1, dtype=np.int64)
+    origin = (low + high) / 2.0 + radius * outward
+    return Walks(outside, np.zeros(WALKS, dtype=bool), origin, cosine_directions(drawn[:, 2:], -outward))
 
 
 def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
@@ -76,6 +135,6 @@ def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
     return surfaces.closed & (dark == 0)
 
 
-def side_normals(normals: Floats, sides: Ints) -> Floats:
+def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:
     """Normals turned over where the side is the back (1)."""
     return normals * np.where(sides == 1, -1.0, 1.0)[:, None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .geometry import normalized
+from .geometry import edge_lengths, normalized
 from .reachability import side_normals
 from .scene import Floats, Ints
 from .subdivision import Faces
@@ -33,6 +33,8 @@ class Receivers:
         Position, shading normal (the axis of the hemisphere) and unit normal of the surface itself.
     keys : (n,) int
         Number for the sampling pattern: the same for all receivers at a place, so that hard edges do not shimmer.
+    sizes : (n,) float, scene units
+        Mean longest edge of the faces around.
     of_corner : (f, 3) int
         The receiver of each face corner, for the face sides given.
     """
@@ -41,6 +43,7 @@ class Receivers:
     normals: Floats
     lift: Floats
     keys: Ints
+    sizes: Floats
     of_corner: Ints
 
 
@@ -71,6 +74,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     position = points[corners.ravel()[first]]
     middles = points[corners].mean(axis=1)
     inward = mean(np.repeat(middles, 3, axis=0)) - position
+    size = edge_lengths(points, corners).max(axis=1)
     # Only along the surface: towards the middle of a bulge would lead below it.
     inward -= np.einsum("nx,nx->n", inward, lift)[:, None] * lift
     return Receivers(
@@ -78,5 +82,6 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         normalized(mean(shading)),
         lift,
         place[first],
+        np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         group.reshape(-1, 3),
     )

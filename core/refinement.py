@@ -100,7 +100,7 @@ def refine(
     while True:
         fragments, rays_before = len(tree.leaves()), transport.rays.rays
         rows = trace_all(transport, seeds, report)
-        flagged, largest, more = _flagged(transport, threshold, smallest, report)
+        flagged, largest, more = _flagged(transport, seeds, threshold, smallest, report)
         full = fragments + 3 * len(flagged) > most_leaves
         if full:
             flagged = flagged[:0]
@@ -142,7 +142,7 @@ def refine_uniformly(
 
 
 def _flagged(
-    transport: Transport, threshold: float, smallest: float, report: Callable[[float], None]
+    transport: Transport, seeds: Seeds, threshold: float, smallest: float, report: Callable[[float], None]
 ) -> tuple[Ints, float, int]:
     """Leaves to split, the largest form factor to a leaf that may be, and the rows lengthened to decide."""
     tree = transport.tree
@@ -158,7 +158,7 @@ def _flagged(
         if len(undecided) == 0 or appeal == MOST_APPEALS:
             break
         transport.lengthen(undecided, report)
-        trace_all(transport, lambda: undecided, report)
+        trace_all(transport, seeds, report)
         lengthened += len(undecided)
     nodes = np.unique(shares.source[shares.share > threshold] >> 1)
     return nodes, float(shares.share.max(initial=0.0)), lengthened

@@ -26,10 +26,18 @@ ESCAPED = -1
 """Hit of a ray that left the scene."""
 
 BURIED = -2
-"""Hit of a ray that started inside a solid: it met the inside of a closed mesh that no light enters."""
+"""Hit of a ray that started inside a solid: it met a side of a mesh that no light reaches."""
 
 BYTES_PER_RAY = 20
 """Kept for every ray: element and coarse patch (int32), two barycentric weights and the distance (float32)."""
+
+COVER_GAP = 0.25
+"""A point of a patch is covered when its rays end within this share of the patch's size, so close that nothing but what
+covers it can see it: a ceiling above a lamp that hangs a millimetre below."""
+
+COVER_POINTS, COVER_RAYS, COVERED_RAYS = 16, 8, 7
+"""Points of a patch that are tested, rays of each, and how many must be short; beside a wall half of them are, in the
+corner of a room three quarters."""
 
 LONG_ROW = 4
 """Times more rays that an element is given when the first ones cannot tell whether a fragment must be split."""
@@ -140,6 +148,42 @@ class Shares:
         return np.sqrt(padded * (1.0 - padded) / count)
 
 
+@dataclass(frozen=True, eq=False)
+class Cover:
+    """Elements that are covered in part, as two elements each: one for far rays, a twin for short ones.
+
+    Whatever lies close above a patch sees its covered part only, and what is far only the rest; one value for both
+    would let the light in between leak out.
+
+    Attributes
+    ----------
+    element : (k,) int
+        Elements that are covered in part; their twins are numbered on from 2 * nodes.
+    points, normals : (k, COVER_POINTS, 3) float
+        Where they were tested.
+    covered : (k, COVER_POINTS) bool
+    first_twin : int
+    twin : (2 * nodes,) int32
+        -1 for an element without one.
+    reach : (2 * nodes,) float32
+        Length of a short ray, in the ray library's units.
+    """
+
+    element: Ints
+    points: Floats
+    normals: Floats
+    covered: NDArray[np.bool_]
+    first_twin: int
+    twin: NDArray[np.int32]
+    reach: Singles
+
+    def tell_apart(self, element: NDArray[np.int32], distance: Singles) -> None:
+        """Replace elements met by short rays by their twins, in place; shapes alike."""
+        flat, length = element.reshape(-1), distance.reshape(-1)
+        short = np.flatnonzero((length < self.reach[flat]) & (self.twin[flat] >= 0))
+        flat[short] = self.twin[flat[short]]
+
+
 class Transport:
     """The rows of all elements that take part.
 
@@ -147,6 +191,8 @@ class Transport:
     ----------
     tables : list of Rows
         Elements with rows of ordinary length, and those with long ones.
+    cover : Cover or None
+        Elements told apart into what is covered and what is not, once refinement has ended.
     """
 
     def __init__(
@@ -154,13 +200,14 @@ class Transport:
         surfaces: Surfaces,
         tree: PatchTree,
         rays: RayScene,
-        solid: NDArray[np.bool_],
+        lit: NDArray[np.bool_],
         rays_per_row: int,
         seed: int,
     ) -> None:
         self.surfaces, self.tree, self.rays, self.seed = surfaces, tree, rays, seed
         self.rays_per_row = rays_per_row
-        self.solid_triangle = solid[surfaces.shell_of_triangle]
+        self.unlit_side: NDArray[np.bool_] = ~lit[surfaces.shell_of_triangle].ravel()
+        self.cover: Cover | None = None
         self.tables = [Rows.none(rays_per_row), Rows.none(rays_per_row * LONG_ROW)]
         self.locator = Locator(tree)
         self._patterns = [
@@ -258,7 +305,9 @@ class Transport:
         triangle = np.maximum(found.triangle, 0)
         root = self.locator.coarse(triangle, found.weights)
         element = 2 * self.locator.leaves(root, found.weights) + found.back
-        element[found.back & self.solid_triangle[triangle]] = BURIED
+        if self.cover is not None:
+            self.cover.tell_apart(element, found.distance)
+        element[self.unlit_side[2 * triangle + found.back]] = BURIED
         element[missed] = ESCAPED
         return element, root, found.weights, found.distance
 
@@ -280,14 +329,61 @@ class Transport:
             moved += len(stale)
         return moved
 
+    def separate_cover(self, report: Callable[[float], None] = lambda share: None) -> Cover:
+        """Find the elements that are covered in part, and send short rays to their twins; ends refinement."""
+        tree = self.tree
+        reach = np.repeat(COVER_GAP * self.rays.scale * tree.sizes(np.arange(len(tree))), 2).astype(np.float32)
+        some = []
+        for table in self.tables:
+            short = (table.distance < reach[table.element][:, None]).mean(axis=1)
+            some.append(table.element[(short > 0.5 / COVER_POINTS) & (short < 1.0 - 0.5 / COVER_POINTS)])
+        elements = np.sort(np.concatenate(some))
+        points, normals = sample_points(self.surfaces, tree, elements, COVER_POINTS, self.seed + 31)
+        covered = self._covered(elements, points, normals, reach, report)
+        mixed = covered.any(axis=1) & ~covered.all(axis=1)
+        elements, points, normals, covered = elements[mixed], points[mixed], normals[mixed], covered[mixed]
+        twin = np.full(2 * len(tree), -1, dtype=np.int32)
+        twin[elements] = 2 * len(tree) + np.arange(len(elements))
+        self.cover = Cover(elements, points, normals, covered, 2 * len(tree), twin, reach)
+        for table in self.tables:
+            hits = np.maximum(table.hits, 0)
+            self.cover.tell_apart(hits, table.distance)
+            np.copyto(table.hits, hits, where=table.hits >= 0)
+        return self.cover
+
+    def _covered(
+        self, elements: Ints, points: Floats, normals: Floats, reach: Singles, report: Callable[[float], None]
+    ) -> NDArray[np.bool_]:
+        patterns = Patterns.make(0, COVER_RAYS, self.seed + 32)
+
+        def work(first: int, last: int) -> NDArray[np.bool_]:
+            axis = normals[first:last].reshape(-1, 3)
+            key = (elements[first:last, None] * COVER_POINTS + np.arange(COVER_POINTS)).ravel()
+            pattern, angle = patterns.choose(key, self.seed + 33)
+            directions = (patterns.directions[pattern] @ frames(axis, angle)).reshape(-1, 3)
+            start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * OFFSET).astype(np.float32)
+            found = self.rays.first_hits(np.repeat(start, COVER_RAYS, axis=0), directions)
+            short = found.distance.reshape(-1, COVER_POINTS, COVER_RAYS) < reach[elements[first:last]][:, None, None]
+            return short.sum(axis=2) >= COVERED_RAYS
+
+        parts = self.rays.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
+        return np.concatenate([np.zeros((0, COVER_POINTS), dtype=bool), *parts])
+
     def shares(self) -> Shares:
-        """Form factors of all pairs from the rows as they are."""
-        return joined([_all_shares(table) for table in self.tables if len(table.element)])
+        """Form factors of all pairs from the rows as they are; those of twins from their short rays."""
+        parts = []
+        for table in self.tables:
+            if self.cover is not None:
+                mixed = self.cover.twin[table.element] >= 0
+                parts.append(_split_shares(table.taken(mixed), self.cover))
+                table = table.taken(~mixed)
+            parts.append(_all_shares(table))
+        return joined(parts)
 
     def shares_to(self, wanted: NDArray[np.bool_]) -> Shares:
         """Form factors to the elements marked in `wanted` (2 * nodes,) only, which costs less."""
         wanted = np.append(wanted, [False, False])
-        return joined([_shares_to(table, wanted) for table in self.tables if len(table.element)])
+        return joined([_shares_to(table, wanted) for table in self.tables])
 
     def buried_share(self) -> Floats:
         """Share of each element's rays that started inside a solid, (2 * nodes,); 0 for elements without a row."""
@@ -314,6 +410,17 @@ def _all_shares(table: Rows) -> Shares:
     some = source != BURIED
     row, source, count = row[some], source[some], count[some]
     return Shares(table.element[row], source, count / table.valid[row], table.valid[row])
+
+
+def _split_shares(table: Rows, cover: Cover) -> Shares:
+    """Count equal hits in each row, its far rays for the element and its short ones for the twin."""
+    short = table.distance < cover.reach[table.element][:, None]
+    receiver = np.where(short, cover.twin[table.element][:, None], table.element[:, None]).astype(np.int64)
+    seen = table.hits != BURIED
+    key, count = np.unique((receiver[seen] << 32) + (table.hits[seen] + 2), return_counts=True)
+    receiver, source = key >> 32, (key & 0xFFFFFFFF) - 2
+    valid = np.bincount(receiver, weights=count, minlength=cover.first_twin + len(cover.element)).astype(np.int64)
+    return Shares(receiver, source, count / valid[receiver], valid[receiver])
 
 
 def _shares_to(table: Rows, wanted: NDArray[np.bool_]) -> Shares:
