@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from . import refinement
 from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance
 from .clock import Clock
-from .direct import strongest_emitters
+from .cutting import cut_faces, cut_receivers, find_cuts
+from .direct import Emitters, strongest_emitters
 from .error_estimate import relative_error
 from .errors import NoLightError
-from .gather import Gathered, GatherRays, corner_values, gather
+from .gather import Gathered, GatherRays, Radiance, corner_values, gather, hidden_receivers
 from .output import baked_meshes
 from .patches import coarse_patches
 from .progress import ProgressCallback, no_progress
@@ -57,6 +58,9 @@ EFFORTS = {
 
 WORKING_COPIES = 6
 """Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
+
+RAYS_TO_FIND_CUTS = 64
+"""Rays that tell whether a place on an edge is hidden."""
 
 FEWEST_RAYS_PER_PATCH = 16
 
@@ -103,17 +107,22 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     check_solved(solution, surfaces)
     traced = rays.rays
 
-    clock.start("Gathering", 0.5, 0.97)
+    clock.start("Gathering", 0.5, 0.95)
     faces = input_faces(surfaces) if settings.output == "ORIGINAL" else conforming_faces(surfaces, tree)
     face, side = wanted_sides(faces, surfaces, lit)
     places = receivers(surfaces, faces, face, side)
     radiance = seen_radiance(transport, balance, solution, emitters)
     gathered = gather(transport, radiance, emitters, places, effort.gather, clock.report)
     irradiance = corner_values(gathered, places.of_corner)
-
-    clock.start("Reconstructing", 0.97, 1.0)
-    meshes, warnings = baked_meshes(scene, surfaces, faces, face, side, irradiance, settings.output)
     error = surface_error(surfaces, faces, face, places, gathered, irradiance)
+    if settings.output == "REFINED":
+        clock.start("Cutting", 0.95, 0.98)
+        faces, face, irradiance = cut_where_hidden(
+            transport, radiance, emitters, effort.gather, faces, face, places, gathered, irradiance
+        )
+
+    clock.start("Reconstructing", 0.98, 1.0)
+    meshes, warnings = baked_meshes(scene, surfaces, faces, face, irradiance, settings.output)
     clock.stop()
     report: dict[str, Any] = {
         "patches": len(tree.leaves()),
@@ -183,6 +192,31 @@ def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tu
     behind = np.flatnonzero(lit[surfaces.shell_of_triangle[faces.triangle], 1])
     face = np.concatenate([np.arange(count), behind])
     return face, np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
+
+
+def cut_where_hidden(
+    transport: Transport,
+    radiance: Radiance,
+    emitters: Emitters,
+    counts: GatherRays,
+    faces: Faces,
+    face: Ints,
+    places: Receivers,
+    gathered: Gathered,
+    irradiance: Floats,
+) -> tuple[Faces, Ints, Floats]:
+    """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
+    count = len(faces.triangle)
+    cuts = find_cuts(
+        faces, places, gathered.hidden, lambda where: hidden_receivers(transport, where, RAYS_TO_FIND_CUTS)
+    )
+    before, after = (
+        gather(transport, radiance, emitters, where, counts, lambda share: None).irradiance
+        for where in cut_receivers(faces, places, cuts)
+    )
+    fronts = gathered.irradiance[places.of_corner[:count]]
+    values = np.concatenate([fronts, irradiance[count:]])
+    return cut_faces(faces, face, places, gathered.hidden, cuts, values, before, after)
 
 
 def surface_error(

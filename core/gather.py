@@ -109,9 +109,35 @@ def gather(
     return Gathered(means + direct, noise, hidden)
 
 
+def hidden_receivers(transport: Transport, receivers: Receivers, rays: int) -> NDArray[np.bool_]:
+    """Whether receivers are hidden, as `gather` finds it, by fewer rays, (n,) bool."""
+    patterns = Patterns.make(0, rays, transport.seed + 102)
+
+    def work(first: int, last: int) -> NDArray[np.bool_]:
+        elements, distance = _looked(transport, receivers, slice(first, last), patterns)
+        return _is_hidden(transport, receivers.sizes[first:last], elements, distance)
+
+    parts = transport.rays.map(work, len(receivers.points), rays)
+    return np.concatenate([np.zeros(0, dtype=bool), *parts])
+
+
 def _indirect_part(
     transport: Transport, radiance: Radiance, receivers: Receivers, part: slice, patterns: Patterns
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    elements, distance = _looked(transport, receivers, part, patterns)
+    count, rays = elements.shape
+    seen = radiance.values[elements]
+    valid = rays - (elements == BURIED).sum(axis=1)
+    means = seen.sum(axis=1, dtype=np.float64) / np.maximum(valid, 1)[:, None]
+    half = seen[:, : rays // 2].mean(axis=1) - seen[:, rays // 2 :].mean(axis=1)
+    hidden = _is_hidden(transport, receivers.sizes[part], elements, distance)
+    return means, np.abs(half @ LUMINANCE) / 2.0, hidden
+
+
+def _looked(
+    transport: Transport, receivers: Receivers, part: slice, patterns: Patterns
+) -> tuple[NDArray[np.int32], Singles]:
+    """What the rays of receivers meet, and how far away, both (n, r)."""
     rays = patterns.directions.shape[1]
     pattern, angle = patterns.choose(receivers.keys[part], transport.seed + 101)
     directions = (patterns.directions[pattern] @ frames(receivers.normals[part], angle)).reshape(-1, 3)
@@ -122,13 +148,15 @@ def _indirect_part(
     above = (directions.reshape(count, rays, 3) @ lift[:, :, None]).ravel() > 0.0
     elements, distance = np.full(count * rays, BELOW, dtype=np.int32), np.full(count * rays, np.inf, dtype=np.float32)
     elements[above], _, _, distance[above] = transport.look(origins[above], directions[above])
-    seen = radiance.values[elements].reshape(count, rays, 3)
-    valid = rays - (elements == BURIED).reshape(count, rays).sum(axis=1)
-    means = seen.sum(axis=1, dtype=np.float64) / np.maximum(valid, 1)[:, None]
-    half = seen[:, : rays // 2].mean(axis=1) - seen[:, rays // 2 :].mean(axis=1)
-    reach = COVER_GAP * transport.rays.scale * receivers.sizes[part]
-    covered = (distance.reshape(count, rays) < reach[:, None]).mean(axis=1) > LEAST_COVERED_SHARE
-    return means, np.abs(half @ LUMINANCE) / 2.0, covered | (valid < LEAST_VALID_SHARE * rays)
+    return elements.reshape(count, rays), distance.reshape(count, rays)
+
+
+def _is_hidden(
+    transport: Transport, sizes: Floats, elements: NDArray[np.int32], distance: Singles
+) -> NDArray[np.bool_]:
+    reach = COVER_GAP * transport.rays.scale * sizes
+    covered = (distance < reach[:, None]).mean(axis=1) > LEAST_COVERED_SHARE
+    return covered | ((elements == BURIED).mean(axis=1) > 1.0 - LEAST_VALID_SHARE)
 
 
 def _direct(

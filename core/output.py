@@ -13,14 +13,14 @@ from .surfaces import Surfaces
 
 
 def baked_meshes(
-    scene: Scene, surfaces: Surfaces, faces: Faces, face: Ints, side: Ints, irradiance: Floats, output: str
+    scene: Scene, surfaces: Surfaces, faces: Faces, face: Ints, irradiance: Floats, output: str
 ) -> tuple[tuple[BakedMesh, ...], list[str]]:
     """Make the meshes of the result, and warnings about those whose lit side is their back.
 
     Parameters
     ----------
-    face, side : (f,) int
-        Face sides with values: all fronts in order, then some backs.
+    face : (f,) int
+        Face of each face side with values: all fronts in order, then some backs.
     irradiance : (f, 3, 3) float, W m^-2 sr^-1
         At their corners.
     """

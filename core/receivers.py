@@ -33,6 +33,8 @@ class Receivers:
         Position, shading normal (the axis of the hemisphere) and unit normal of the surface itself.
     keys : (n,) int
         Number for the sampling pattern: the same for all receivers at a place, so that hard edges do not shimmer.
+    inward : (n, 3) float, scene units
+        How far the position is off the vertex.
     sizes : (n,) float, scene units
         Mean longest edge of the faces around.
     of_corner : (f, 3) int
@@ -43,6 +45,7 @@ class Receivers:
     normals: Floats
     lift: Floats
     keys: Ints
+    inward: Floats
     sizes: Floats
     of_corner: Ints
 
@@ -82,6 +85,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         normalized(mean(shading)),
         lift,
         place[first],
+        INWARD * inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         group.reshape(-1, 3),
     )

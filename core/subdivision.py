@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import templates
 from .geometry import normalized
 from .patches import PatchTree
 from .scene import Floats, Ints
@@ -84,57 +85,16 @@ def _twice_halved(tree: PatchTree, corners: Ints, middles: Ints) -> np.ndarray:
     return (present & (first | second)).any(axis=1)
 
 
-# Triangles of a leaf by the edges that have a midpoint (bit 0: 0-1, bit 1: 1-2, bit 2: 2-0). Points 0 to 2 are the
-# corners, 3 to 5 the midpoints of 0-1, 1-2, 2-0. Two midpoints leave a quadrilateral, cut along either diagonal.
-_M01, _M12, _M20 = 3, 4, 5
-TEMPLATES: dict[int, tuple[tuple[int, int, int], ...]] = {
-    0: ((0, 1, 2),),
-    1: ((0, _M01, 2), (_M01, 1, 2)),
-    2: ((1, _M12, 0), (_M12, 2, 0)),
-    4: ((2, _M20, 1), (_M20, 0, 1)),
-    3: ((_M01, 1, _M12), (0, _M01, _M12), (0, _M12, 2)),
-    6: ((_M12, 2, _M20), (1, _M12, _M20), (1, _M20, 0)),
-    5: ((_M20, 0, _M01), (2, _M20, _M01), (2, _M01, 1)),
-    7: ((0, _M01, _M20), (_M01, 1, _M12), (_M20, _M12, 2), (_M12, _M20, _M01)),
-}
-OTHER_DIAGONAL: dict[int, tuple[tuple[int, int, int], ...]] = {
-    3: ((_M01, 1, _M12), (0, _M01, 2), (_M01, _M12, 2)),
-    6: ((_M12, 2, _M20), (1, _M12, 0), (_M12, _M20, 0)),
-    5: ((_M20, 0, _M01), (2, _M20, 1), (_M20, _M01, 1)),
-}
-DIAGONALS = {3: ((0, _M12), (_M01, 2)), 6: ((1, _M20), (_M12, 0)), 5: ((2, _M01), (_M20, 1))}
-
-
 def _closed_by_templates(tree: PatchTree, leaves: Ints, middles: Ints) -> Faces:
-    points = np.concatenate([tree.corners[leaves], middles], axis=1)
+    six = np.concatenate([tree.corners[leaves], middles], axis=1)
     w = tree.weights[leaves]
     weights = np.concatenate([w, (w + np.roll(w, -1, axis=1)) / 2.0], axis=1)
-    code = ((middles >= 0) * np.array([1, 2, 4])).sum(axis=1)
-    corners_out, triangle_out, weights_out, order = [], [], [], []
-    for bits, template in TEMPLATES.items():
-        chosen = np.flatnonzero(code == bits)
-        groups = [(chosen, template)]
-        if bits in OTHER_DIAGONAL:
-            (a, b), (c, d) = DIAGONALS[bits]
-            first = _distance(tree, points[chosen, a], points[chosen, b])
-            shorter = _distance(tree, points[chosen, c], points[chosen, d]) < first
-            groups = [(chosen[~shorter], template), (chosen[shorter], OTHER_DIAGONAL[bits])]
-        for members, pieces in groups:
-            for piece in pieces:
-                corners_out.append(points[members][:, piece])
-                triangle_out.append(tree.triangle[leaves[members]])
-                weights_out.append(weights[members][:, piece])
-                order.append(members)
-    rank = np.argsort(np.concatenate(order), kind="stable")
+    member, piece = templates.cut(tree.points, six, middles >= 0)
     return Faces(
         tree.points,
         tree.place_of_point,
         tree.mesh_of_point,
-        np.concatenate(corners_out)[rank],
-        np.concatenate(triangle_out)[rank],
-        np.concatenate(weights_out)[rank],
+        six[member[:, None], piece],
+        tree.triangle[leaves[member]],
+        weights[member[:, None], piece],
     )
-
-
-def _distance(tree: PatchTree, a: Ints, b: Ints) -> Floats:
-    return np.linalg.norm(tree.points[a] - tree.points[b], axis=1)

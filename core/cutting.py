@@ -1,0 +1,245 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces cut along the line where another object meets them: the foot of a block, the rim of a lamp under a ceiling.
+
+Where one corner of a face is hidden and another is not, the light breaks off in between. The edges are searched for the
+place by bisection, the face is cut there (discontinuity meshing after Heckbert 1992, by visibility instead of geometry)
+and the two pieces take the light of their own side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import templates
+from .geometry import normalized
+from .receivers import Receivers
+from .scene import Floats, Ints
+from .subdivision import Faces
+
+BISECTIONS = 10
+"""Halvings of an edge: the cut is found to a thousandth of it."""
+
+MARGIN = 0.004
+"""Share of the edge that receivers keep from the cut, on both sides: a few times what the bisection leaves open."""
+
+LEAST_PIECE = 0.02
+"""Share of the edge that a cut keeps from its ends, so that no sliver is left."""
+
+
+@dataclass(frozen=True, eq=False)
+class CutEdges:
+    """Edges with a hidden and a seen end, each with the place where the one turns into the other.
+
+    Attributes
+    ----------
+    start, end : (k,) int
+        Points, start seen and end hidden.
+    seen, hidden : (k,) int
+        Receivers of the two ends.
+    share : (k,) float
+        Where the edge is cut, 0 at the start.
+    """
+
+    start: Ints
+    end: Ints
+    seen: Ints
+    hidden: Ints
+    share: Floats
+
+
+IsHidden = Callable[[Receivers], NDArray[np.bool_]]
+
+
+def find_cuts(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], is_hidden: IsHidden) -> CutEdges:
+    """Search the edges of the faces' fronts.
+
+    Parameters
+    ----------
+    places : Receivers
+        `of_corner` begins with the fronts of all faces, in order.
+    hidden : (n,) bool
+        Of the receivers.
+    is_hidden : callable
+        Tells the same of other receivers.
+    """
+    count = len(faces.triangle)
+    receiver = places.of_corner[:count].ravel()
+    following = np.roll(places.of_corner[:count], -1, axis=1).ravel()
+    point, next_point = faces.corners.ravel(), np.roll(faces.corners, -1, axis=1).ravel()
+    broken = np.flatnonzero(hidden[receiver] != hidden[following])
+    turned = hidden[receiver[broken]]
+    pairs = np.stack(
+        [
+            np.where(turned, next_point[broken], point[broken]),
+            np.where(turned, point[broken], next_point[broken]),
+            np.where(turned, following[broken], receiver[broken]),
+            np.where(turned, receiver[broken], following[broken]),
+        ],
+        axis=1,
+    )
+    start, end, seen, unseen = np.unique(pairs, axis=0).T
+    low, high = np.zeros(len(start)), np.ones(len(start))
+    for _ in range(BISECTIONS if len(start) else 0):
+        middle = (low + high) / 2.0
+        inside = is_hidden(_along(faces, places, CutEdges(start, end, seen, unseen, middle), middle))
+        low, high = np.where(inside, low, middle), np.where(inside, middle, high)
+    share = np.clip((low + high) / 2.0, LEAST_PIECE, 1.0 - LEAST_PIECE)
+    return CutEdges(start, end, seen, unseen, share)
+
+
+def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Receivers, Receivers]:
+    """Receivers on the seen and on the hidden side of each cut."""
+    before = _along(faces, places, cuts, cuts.share - MARGIN)
+    return before, _along(faces, places, cuts, cuts.share + MARGIN)
+
+
+def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Receivers:
+    """Receivers on edges, at a share of the way."""
+    t = share[:, None]
+
+    def mixed(values: Floats) -> Floats:
+        return values[cuts.seen] * (1.0 - t) + values[cuts.hidden] * t
+
+    inward = mixed(places.inward)
+    return Receivers(
+        points=faces.points[cuts.start] * (1.0 - t) + faces.points[cuts.end] * t + inward,
+        normals=normalized(mixed(places.normals)),
+        lift=normalized(mixed(places.lift)),
+        keys=places.keys[cuts.seen],
+        inward=inward,
+        sizes=places.sizes[cuts.seen] * (1.0 - share) + places.sizes[cuts.hidden] * share,
+        of_corner=np.zeros((0, 3), dtype=np.int64),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class FaceCuts:
+    """The cuts as the faces see them.
+
+    Attributes
+    ----------
+    point : (s, 3) int
+        New point on the edges 0-1, 1-2, 2-0 of each face, -1 where there is none.
+    share : (s, 3) float
+        Where, from the edge's first corner.
+    own : (s, 3) int
+        The cut whose two ends are this face's own receivers, -1 where the edge is cut for a neighbour's sake.
+    """
+
+    point: Ints
+    share: Floats
+    own: Ints
+
+
+def _cuts_of_faces(faces: Faces, of_corner: Ints, cuts: CutEdges) -> tuple[Faces, FaceCuts]:
+    """Make one new point for each edge that is cut, and find the cuts of each face's edges."""
+    start, end = faces.corners, np.roll(faces.corners, -1, axis=1)
+    key, forward = _edge_keys(faces.places, start, end)
+    cut_key, cut_forward = _edge_keys(faces.places, cuts.start, cuts.end)
+    unique, first = np.unique(cut_key, return_index=True)
+    place = np.minimum(np.searchsorted(unique, key), len(unique) - 1)
+    present = unique[place] == key
+    from_low = np.where(cut_forward, cuts.share, 1.0 - cuts.share)[first]
+    share = np.where(forward, from_low[place], 1.0 - from_low[place])
+    point = np.where(present, len(faces.points) + place, -1)
+    own = _own_cuts(of_corner, cuts, present)
+    a, b = cuts.start[first], cuts.end[first]
+    t = cuts.share[first, None]
+    made = faces.points[a] * (1.0 - t) + faces.points[b] * t
+    return Faces(
+        np.concatenate([faces.points, made]),
+        np.concatenate([faces.places, np.arange(len(faces.points), len(faces.points) + len(made))]),
+        np.concatenate([faces.mesh_of_point, faces.mesh_of_point[a]]),
+        faces.corners,
+        faces.triangle,
+        faces.weights,
+    ), FaceCuts(point, share, own)
+
+
+def _edge_keys(places: Ints, start: Ints, end: Ints) -> tuple[Ints, NDArray[np.bool_]]:
+    a, b = places[start], places[end]
+    return (np.minimum(a, b) << 32) | np.maximum(a, b), a < b
+
+
+def _own_cuts(of_corner: Ints, cuts: CutEdges, present: NDArray[np.bool_]) -> Ints:
+    following = np.roll(of_corner, -1, axis=1)
+    key = (np.minimum(of_corner, following) << 32) | np.maximum(of_corner, following)
+    cut_key = (np.minimum(cuts.seen, cuts.hidden) << 32) | np.maximum(cuts.seen, cuts.hidden)
+    order = np.argsort(cut_key, kind="stable")
+    place = np.minimum(np.searchsorted(cut_key[order], key), len(order) - 1)
+    return np.where(present & (cut_key[order[place]] == key), order[place], -1)
+
+
+def cut_faces(
+    faces: Faces,
+    face: Ints,
+    places: Receivers,
+    hidden: NDArray[np.bool_],
+    cuts: CutEdges,
+    values: Floats,
+    seen_value: Floats,
+    hidden_value: Floats,
+) -> tuple[Faces, Ints, Floats]:
+    """Cut faces at the cuts of their edges, and give the pieces the values of their side.
+
+    Parameters
+    ----------
+    face : (f,) int
+        Face of each face side with values: all fronts in order, then some backs.
+    values : (f, 3, 3) float
+        At their corners: of the fronts as gathered, hidden or not.
+    seen_value, hidden_value : (k, 3) float
+        On the two sides of each cut.
+
+    Returns
+    -------
+    faces : Faces
+    face : (g,) int
+    values : (g, 3, 3) float
+        The same for the new faces.
+    """
+    if len(cuts.start) == 0:
+        return faces, face, values
+    count = len(faces.triangle)
+    of_corner = places.of_corner[:count]
+    faces, on_face = _cuts_of_faces(faces, of_corner, cuts)
+    six = np.concatenate([faces.corners, on_face.point], axis=1)
+    member, piece = templates.cut(faces.points, six, on_face.point >= 0)
+    row = member[:, None]
+
+    def interpolated(at_corners: Floats, share: Floats) -> Floats:
+        t = share[..., None]
+        return np.concatenate([at_corners, at_corners * (1.0 - t) + np.roll(at_corners, -1, axis=1) * t], axis=1)
+
+    unseen = hidden[of_corner]
+    # A piece lies on the side of the corners it has; one between three cuts has none and counts as seen.
+    piece_hidden = np.where(piece < 3, unseen[row, np.minimum(piece, 2)], False).any(axis=1)
+    front = interpolated(values[:count], on_face.share)
+    own = on_face.own >= 0
+    sides = []
+    for value in (seen_value, hidden_value):
+        side = front.copy()
+        side[:, 3:][own] = value[on_face.own[own]]
+        sides.append(side[row, piece])
+    behind = face[count:]
+    back = interpolated(values[count:], on_face.share[behind])
+    number = np.full(count, -1, dtype=np.int64)
+    number[behind] = np.arange(len(behind))
+    with_back = np.flatnonzero(number[member] >= 0)
+    new_back = back[number[member[with_back]][:, None], piece[with_back]]
+    new_front = np.where(piece_hidden[:, None, None], sides[1], sides[0])
+    weights = interpolated(faces.weights, on_face.share)
+    new = Faces(
+        faces.points,
+        faces.places,
+        faces.mesh_of_point,
+        six[row, piece],
+        faces.triangle[member],
+        weights[row, piece],
+    )
+    return new, np.concatenate([np.arange(len(member)), with_back]), np.concatenate([new_front, new_back])
