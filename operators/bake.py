@@ -108,10 +108,13 @@ def stop_running_job() -> None:
 
 
 class RADIOSITY_OT_bake(bpy.types.Operator):
-    """Compute how light spreads in the scene and store it in the colours of the selected meshes."""
+    """Bake the selected meshes: blocking from a script, with progress and a way out from the window."""
 
     bl_idname = "radiosity.bake"
     bl_label = "Bake Radiosity"
+    bl_description = (
+        "Compute how light spreads between all that renders, and store it in the vertex colours of the selected meshes"
+    )
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
 
     job: ClassVar[BakeJob | None] = None
@@ -182,7 +185,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
             report = finish(self._extraction, message.result, self._settings, self._read)
         except (BakeError, Cancelled) as error:
             return self._gave_up(error)
-        show_in_viewport(context)
+        show_in_viewport(context, (bpy.data.objects[name] for name in report["objects"]))
         return self._done(report)
 
     def _done(self, report):
@@ -216,10 +219,11 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
 
 
 class RADIOSITY_OT_cancel(bpy.types.Operator):
-    """Stop the bake that is running; nothing is changed (Esc does the same)."""
+    """Ask the running bake to stop."""
 
     bl_idname = "radiosity.cancel"
     bl_label = "Cancel Bake"
+    bl_description = "Stop the bake that is running; nothing is changed. Esc does the same"
     bl_options = {"INTERNAL"}  # noqa: RUF012 - Blender reads it from the class
 
     @classmethod
@@ -234,7 +238,10 @@ class RADIOSITY_OT_cancel(bpy.types.Operator):
 
 
 def _redraw_panels(context: bpy.types.Context) -> None:
+    """Redraw the sidebars of the 3D viewports; drawing a heavy scene as well would delay Esc."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
-                area.tag_redraw()
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The material and the viewport shading that show baked colours."""
 
+from collections.abc import Iterable
 from contextlib import suppress
 
 import bpy
@@ -85,12 +86,16 @@ def remove_unused_display_materials() -> None:
             bpy.data.materials.remove(material)
 
 
-def show_in_viewport(context: bpy.types.Context) -> None:
-    """Let the solid viewport that the bake was started from show colour attributes, unshaded.
+def show_in_viewport(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> None:
+    """Let the viewport that the bake was started from show `objects`, and their colours if it is solid.
 
-    Studio light on top of baked light would show something that is neither.
+    Studio light on top of baked light would show something that is neither, so the colours are shown unshaded.
     """
-    shading = getattr(context.space_data, "shading", None)
+    space = context.space_data
+    if getattr(space, "local_view", None) is not None:
+        for obj in objects:
+            obj.local_view_set(space, True)
+    shading = getattr(space, "shading", None)
     if shading is None or shading.type != "SOLID" or shading.color_type == "VERTEX":
         return
     context.scene.radiosity.shading_before = f"{shading.color_type} {shading.light}"

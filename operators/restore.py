@@ -24,13 +24,14 @@ from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, is_output, source_of
 
 
 class RADIOSITY_OT_restore(bpy.types.Operator):
-    """Remove the baked light and bring the original meshes and materials back.
-
-    The selected objects if any of them is baked, else all of the scene
-    """
+    """Bring back what was there before the bake."""
 
     bl_idname = "radiosity.restore"
     bl_label = "Restore Originals"
+    bl_description = (
+        "Remove the baked light and bring the original meshes and materials back: "
+        "of the selected objects if any of them is baked, else of the whole scene"
+    )
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
 
     @classmethod
