@@ -14,20 +14,20 @@ from . import refinement
 from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance
 from .clock import Clock
 from .cutting import cut_faces, cut_receivers, find_cuts
-from .direct import Emitters, strongest_emitters
-from .error_estimate import relative_error
+from .detail import GatherAt, Lit, light_up, light_up_in_detail
+from .direct import strongest_emitters
 from .errors import NoLightError
-from .gather import Gathered, GatherRays, Radiance, corner_values, gather, hidden_receivers
+from .gather import Gathered, GatherRays, gather, hidden_receivers
 from .output import baked_meshes
 from .patches import coarse_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
-from .receivers import Receivers, receivers
+from .receivers import Receivers
 from .result import BakeResult
 from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
 from .solve import Solution, solve_balance
-from .subdivision import Faces, conforming_faces, input_faces
+from .subdivision import Faces, input_faces
 from .surfaces import Surfaces, join
 from .transport import BYTES_PER_RAY, Transport
 from .visibility import RayScene
@@ -42,19 +42,25 @@ class Effort:
     patches : int
         Patches that a uniform subdivision of the scene at the automatic minimum size would have, about.
     rays_per_patch : int
+    tolerance : float
+        RMS error of interpolation over the surface, relative to the mean, down to which faces are split.
     gather : GatherRays
     """
 
     patches: int
     rays_per_patch: int
+    tolerance: float
     gather: GatherRays
 
 
 EFFORTS = {
-    "DRAFT": Effort(2_000, 64, GatherRays(64, 16, 32)),
-    "GOOD": Effort(16_000, 128, GatherRays(256, 16, 96)),
-    "HIGH": Effort(64_000, 256, GatherRays(1024, 32, 384)),
+    "DRAFT": Effort(4_000, 32, 0.04, GatherRays(64, 16, 32)),
+    "GOOD": Effort(16_000, 64, 0.01, GatherRays(256, 16, 96)),
+    "HIGH": Effort(64_000, 128, 0.005, GatherRays(1024, 32, 384)),
 }
+
+BYTES_PER_VERTEX = 4096
+"""Of the receivers, faces and values of a vertex, with the working copies made of them."""
 
 WORKING_COPIES = 6
 """Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
@@ -108,18 +114,19 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     traced = rays.rays
 
     clock.start("Gathering", 0.5, 0.95)
-    faces = input_faces(surfaces) if settings.output == "ORIGINAL" else conforming_faces(surfaces, tree)
-    face, side = wanted_sides(faces, surfaces, lit)
-    places = receivers(surfaces, faces, face, side)
     radiance = seen_radiance(transport, balance, solution, emitters)
-    gathered = gather(transport, radiance, emitters, places, effort.gather, clock.report)
-    irradiance = corner_values(gathered, places.of_corner)
-    error = surface_error(surfaces, faces, face, places, gathered, irradiance)
-    if settings.output == "REFINED":
+
+    def gather_at(places: Receivers) -> Gathered:
+        return gather(transport, radiance, emitters, places, effort.gather, clock.report)
+
+    if settings.output == "ORIGINAL":
+        shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
+        faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
+    else:
+        most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
+        shown = light_up_in_detail(surfaces, lit, tree, smallest, effort.tolerance, most_vertices, gather_at)
         clock.start("Cutting", 0.95, 0.98)
-        faces, face, irradiance = cut_where_hidden(
-            transport, radiance, emitters, effort.gather, faces, face, places, gathered, irradiance
-        )
+        faces, face, irradiance = cut_where_hidden(transport, gather_at, shown)
 
     clock.start("Reconstructing", 0.98, 1.0)
     meshes, warnings = baked_meshes(scene, surfaces, faces, face, irradiance, settings.output)
@@ -135,7 +142,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         "iterations": solution.iterations,
         "residual": solution.residual,
         "converged": solution.converged,
-        "estimated_error": error,
+        "estimated_error": shown.error(surfaces),
         "form_factor_standard_error": refinement.largest_standard_error(shares),
         "energy": energy(balance, solution, surfaces),
         "minimum_size": smallest,
@@ -186,46 +193,16 @@ def subdivide(
     return refinement.refine_uniformly(transport, seeds, smallest, most_patches, report)
 
 
-def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tuple[Ints, Ints]:
-    """Faces and sides that get values: every front, and the backs that light reaches, both (f,)."""
-    count = len(faces.triangle)
-    behind = np.flatnonzero(lit[surfaces.shell_of_triangle[faces.triangle], 1])
-    face = np.concatenate([np.arange(count), behind])
-    return face, np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
-
-
-def cut_where_hidden(
-    transport: Transport,
-    radiance: Radiance,
-    emitters: Emitters,
-    counts: GatherRays,
-    faces: Faces,
-    face: Ints,
-    places: Receivers,
-    gathered: Gathered,
-    irradiance: Floats,
-) -> tuple[Faces, Ints, Floats]:
+def cut_where_hidden(transport: Transport, gather_at: GatherAt, shown: Lit) -> tuple[Faces, Ints, Floats]:
     """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
-    count = len(faces.triangle)
+    count, hidden = len(shown.faces.triangle), shown.gathered.hidden
     cuts = find_cuts(
-        faces, places, gathered.hidden, lambda where: hidden_receivers(transport, where, RAYS_TO_FIND_CUTS)
+        shown.faces, shown.places, hidden, lambda where: hidden_receivers(transport, where, RAYS_TO_FIND_CUTS)
     )
-    before, after = (
-        gather(transport, radiance, emitters, where, counts, lambda share: None).irradiance
-        for where in cut_receivers(faces, places, cuts)
-    )
-    fronts = gathered.irradiance[places.of_corner[:count]]
-    values = np.concatenate([fronts, irradiance[count:]])
-    return cut_faces(faces, face, places, gathered.hidden, cuts, values, before, after)
-
-
-def surface_error(
-    surfaces: Surfaces, faces: Faces, face: Ints, places: Receivers, gathered: Gathered, irradiance: Floats
-) -> float:
-    """Estimated relative RMS error over what was baked, emitters and hidden places left out."""
-    counted = ~surfaces.emission[faces.triangle[face]].any(axis=1) & ~gathered.hidden[places.of_corner].all(axis=1)
-    corners = faces.points[faces.corners[face]]
-    return relative_error(corners, places.of_corner, irradiance, gathered.noise, counted)
+    before, after = (gather_at(where).irradiance for where in cut_receivers(shown.faces, shown.places, cuts))
+    fronts = shown.gathered.irradiance[shown.places.of_corner[:count]]
+    values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
+    return cut_faces(shown.faces, shown.face, shown.places, hidden, cuts, values, before, after)
 
 
 def limit_warnings(rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort) -> list[str]:

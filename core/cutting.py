@@ -110,6 +110,7 @@ def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Re
         points=faces.points[cuts.start] * (1.0 - t) + faces.points[cuts.end] * t + inward,
         normals=normalized(mixed(places.normals)),
         lift=normalized(mixed(places.lift)),
+        codes=places.codes[cuts.seen],
         keys=places.keys[cuts.seen],
         inward=inward,
         sizes=places.sizes[cuts.seen] * (1.0 - share) + places.sizes[cuts.hidden] * share,
@@ -158,6 +159,7 @@ def _cuts_of_faces(faces: Faces, of_corner: Ints, cuts: CutEdges) -> tuple[Faces
         faces.corners,
         faces.triangle,
         faces.weights,
+        faces.node,
     ), FaceCuts(point, share, own)
 
 
@@ -241,5 +243,6 @@ def cut_faces(
         six[row, piece],
         faces.triangle[member],
         weights[row, piece],
+        faces.node[member],
     )
     return new, np.concatenate([np.arange(len(member)), with_back]), np.concatenate([new_front, new_back])

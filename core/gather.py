@@ -125,7 +125,7 @@ def _indirect_part(
     transport: Transport, radiance: Radiance, receivers: Receivers, part: slice, patterns: Patterns
 ) -> tuple[Floats, Floats, NDArray[np.bool_]]:
     elements, distance = _looked(transport, receivers, part, patterns)
-    count, rays = elements.shape
+    rays = elements.shape[1]
     seen = radiance.values[elements]
     valid = rays - (elements == BURIED).sum(axis=1)
     means = seen.sum(axis=1, dtype=np.float64) / np.maximum(valid, 1)[:, None]

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -31,6 +31,8 @@ class Receivers:
     ----------
     points, normals, lift : (n, 3) float
         Position, shading normal (the axis of the hemisphere) and unit normal of the surface itself.
+    codes : (n,) int, ascending
+        Numbers that tell the place, normal and side: equal for the same receiver of another subdivision.
     keys : (n,) int
         Number for the sampling pattern: the same for all receivers at a place, so that hard edges do not shimmer.
     inward : (n, 3) float, scene units
@@ -44,10 +46,16 @@ class Receivers:
     points: Floats
     normals: Floats
     lift: Floats
+    codes: Ints
     keys: Ints
     inward: Floats
     sizes: Floats
     of_corner: Ints
+
+    def taken(self, which: Ints) -> Receivers:
+        """Some of the receivers, without faces."""
+        values = {field.name: getattr(self, field.name)[which] for field in fields(self) if field.name != "of_corner"}
+        return Receivers(**values, of_corner=np.zeros((0, 3), dtype=np.int64))
 
 
 def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) -> Receivers:
@@ -65,7 +73,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     cells = np.rint(shading * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS
     span = 2 * NORMAL_CELLS + 1
     key = place * span**3 + (cells[:, 0] * span + cells[:, 1]) * span + cells[:, 2]
-    _, first, group = np.unique(key, return_index=True, return_inverse=True)
+    codes, first, group = np.unique(key, return_index=True, return_inverse=True)
     count = len(first)
 
     def mean(values: Floats) -> Floats:
@@ -84,6 +92,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         position + INWARD * inward,
         normalized(mean(shading)),
         lift,
+        codes,
         place[first],
         INWARD * inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),

@@ -12,7 +12,7 @@ import numpy as np
 from .scene import Floats, Ints
 from .transport import ESCAPED, Shares, Transport
 
-MOST_APPEALS = 3
+MOST_APPEALS = 1
 """Times in a round that more rays are asked for, each time for the pair on which the split of a fragment now rests."""
 
 THRESHOLD_MET = "every form factor is below the threshold"

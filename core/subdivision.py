@@ -31,6 +31,8 @@ class Faces:
         The surfaces' triangle each lies in.
     weights : (s, 3, 3) float
         Barycentric coordinates of the corners in it.
+    node : (s,) int
+        The leaf of the patch tree each lies in.
     """
 
     points: Floats
@@ -39,6 +41,7 @@ class Faces:
     corners: Ints
     triangle: Ints
     weights: Floats
+    node: Ints
 
     def corner_normals(self, surfaces: Surfaces) -> Floats:
         """Shading normals at the corners, interpolated and of length 1, (s, 3, 3)."""
@@ -50,17 +53,24 @@ def input_faces(surfaces: Surfaces) -> Faces:
     triangle = np.flatnonzero(surfaces.baked)
     weights = np.broadcast_to(np.eye(3), (len(triangle), 3, 3)).copy()
     tree = PatchTree(surfaces)
-    return Faces(tree.points, tree.place_of_point, tree.mesh_of_point, surfaces.triangles[triangle], triangle, weights)
+    return Faces(
+        tree.points,
+        tree.place_of_point,
+        tree.mesh_of_point,
+        surfaces.triangles[triangle],
+        triangle,
+        weights,
+        triangle,
+    )
 
 
 def conforming_faces(surfaces: Surfaces, tree: PatchTree) -> Faces:
     """Faces of the baked meshes in which every vertex on an edge is a corner of the faces on both sides.
 
     Leaves next to leaves two levels finer are split first; what is left has at most one vertex on an edge, and is cut
-    into two, three or four triangles from there (red-green closure; Bank, Sherman & Weiser 1983). The tree given is not
-    changed.
+    into two, three or four triangles from there (red-green closure; Bank, Sherman & Weiser 1983). The tree is split
+    in place.
     """
-    tree = tree.copy()
     while True:
         leaves = tree.leaves()
         leaves = leaves[surfaces.baked[tree.triangle[leaves]]]
@@ -97,4 +107,5 @@ def _closed_by_templates(tree: PatchTree, leaves: Ints, middles: Ints) -> Faces:
         six[member[:, None], piece],
         tree.triangle[leaves[member]],
         weights[member[:, None], piece],
+        leaves[member],
     )

@@ -152,6 +152,6 @@ def _reflectance(
 ) -> Floats:
     values = np.nan_to_num(values, posinf=1.0)
     outside = ((values < 0.0) | (values > 1.0)).any(axis=1)
-    for mesh in np.unique(mesh_of_triangle[outside]):
-        warnings.append(f"{meshes[mesh].name}: a base colour outside 0 to 1 was limited to it")
+    names = [meshes[mesh].name for mesh in np.unique(mesh_of_triangle[outside])]
+    warnings.extend(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names)
     return np.clip(values, 0.0, 1.0)

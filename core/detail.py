@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vertices where the solution needs them: faces are split while interpolation between their corners misses too much.
+
+The paper's rule looks at form factors and cannot see shadows; here the light that was gathered decides. What was
+gathered once is kept, so each round costs its new vertices only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .direct import LUMINANCE
+from .error_estimate import interpolation_error, relative_error
+from .gather import Gathered, corner_values
+from .patches import PatchTree
+from .receivers import Receivers, receivers
+from .scene import Floats, Ints
+from .subdivision import Faces, conforming_faces
+from .surfaces import Surfaces
+
+MOST_ROUNDS = 8
+"""Rounds of splitting; each halves the faces at a shadow's border."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lit:
+    """Faces and the light gathered at them.
+
+    Attributes
+    ----------
+    faces : Faces
+    face, side : (f,) int
+        Faces and sides (1: the back) with values: all fronts in order, then some backs.
+    places : Receivers
+        `of_corner` has a row for each face side.
+    gathered : Gathered
+        At the receivers.
+    """
+
+    faces: Faces
+    face: Ints
+    side: Ints
+    places: Receivers
+    gathered: Gathered
+
+    def corner_irradiance(self) -> Floats:
+        """Irradiance over pi at the corners of the face sides, (f, 3, 3)."""
+        return corner_values(self.gathered, self.places.of_corner)
+
+    def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
+        """Face sides whose error counts: neither emitters nor hidden altogether, (f,)."""
+        emitting = surfaces.emission[self.faces.triangle[self.face]].any(axis=1)
+        return ~emitting & ~self.gathered.hidden[self.places.of_corner].all(axis=1)
+
+    def error(self, surfaces: Surfaces) -> float:
+        """Estimated RMS error over the surface, relative to its mean."""
+        corners = self.faces.points[self.faces.corners[self.face]]
+        return relative_error(
+            corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.counted(surfaces)
+        )
+
+
+GatherAt = Callable[[Receivers], Gathered]
+
+
+def light_up(surfaces: Surfaces, lit_sides: NDArray[np.bool_], faces: Faces, gather_at: GatherAt) -> Lit:
+    """Gather light at all corners of faces as they are."""
+    face, side = _wanted_sides(faces, surfaces, lit_sides)
+    places = receivers(surfaces, faces, face, side)
+    return Lit(faces, face, side, places, gather_at(places))
+
+
+def light_up_in_detail(
+    surfaces: Surfaces,
+    lit_sides: NDArray[np.bool_],
+    tree: PatchTree,
+    smallest: float,
+    tolerance: float,
+    most_vertices: int,
+    gather_at: GatherAt,
+) -> Lit:
+    """Gather light at the corners of a conforming mesh, and split its faces until the estimated error is small.
+
+    Parameters
+    ----------
+    lit_sides : (shells, 2) bool
+    tree : PatchTree
+        The patches to begin with; not changed.
+    smallest : float
+        Only faces of twice this size or more are split.
+    tolerance : float
+        RMS error over the surface to be reached, relative to the mean.
+    most_vertices : int
+        Receivers after which no face is split any more.
+    """
+    tree = tree.copy()
+    known = light_up(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at)
+    for _ in range(MOST_ROUNDS):
+        nodes = _nodes_to_split(surfaces, known, tree, smallest, tolerance)
+        if len(nodes) == 0 or len(known.places.points) > most_vertices:
+            break
+        tree.split(nodes)
+        known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
+    return known
+
+
+def _wanted_sides(faces: Faces, surfaces: Surfaces, lit_sides: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Faces and sides that get values: every front, and the backs that light reaches, both (f,)."""
+    count = len(faces.triangle)
+    behind = np.flatnonzero(lit_sides[surfaces.shell_of_triangle[faces.triangle], 1])
+    face = np.concatenate([np.arange(count), behind])
+    return face, np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
+
+
+def _updated(surfaces: Surfaces, lit_sides: NDArray[np.bool_], faces: Faces, gather_at: GatherAt, known: Lit) -> Lit:
+    """Gather at the receivers that `known` has not, and take the others from it."""
+    face, side = _wanted_sides(faces, surfaces, lit_sides)
+    places = receivers(surfaces, faces, face, side)
+    old = known.places
+    place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
+    missing = np.flatnonzero(old.codes[place] != places.codes)
+    new = gather_at(places.taken(missing))
+    kept = known.gathered
+    irradiance, noise, hidden = kept.irradiance[place], kept.noise[place], kept.hidden[place]
+    irradiance[missing], noise[missing], hidden[missing] = new.irradiance, new.noise, new.hidden
+    return Lit(faces, face, side, places, Gathered(irradiance, noise, hidden))
+
+
+def _nodes_to_split(surfaces: Surfaces, known: Lit, tree: PatchTree, smallest: float, tolerance: float) -> Ints:
+    """The fewest leaves whose error must go for the rest to meet the tolerance, worst first."""
+    faces, face = known.faces, known.face
+    corners = faces.points[faces.corners[face]]
+    luminance = known.corner_irradiance() @ LUMINANCE
+    counted = known.counted(surfaces)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) * counted
+    if not area.any():
+        return np.zeros(0, dtype=np.int64)
+    missed = interpolation_error(corners, known.places.of_corner, luminance)
+    square = np.bincount(faces.node[face], weights=missed**2 * area, minlength=len(tree))
+    mean = float((area * luminance.mean(axis=1)).sum() / area.sum())
+    order = np.argsort(-square, kind="stable")
+    # What is left when the first k are gone.
+    left = square.sum() - np.cumsum(square[order])
+    needed = int(np.searchsorted(-left, -((tolerance * mean) ** 2) * area.sum()))
+    if square.sum() <= (tolerance * mean) ** 2 * area.sum():
+        return np.zeros(0, dtype=np.int64)
+    chosen = order[: needed + 1]
+    chosen = chosen[square[chosen] > 0.0]
+    return np.sort(chosen[tree.sizes(chosen) >= 2.0 * smallest])
