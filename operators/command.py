@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import bpy
@@ -132,10 +133,12 @@ def _run(options: argparse.Namespace) -> None:
     objects = _objects(options.object, context)
     output, report_path = _paths(options)
     report = bake_objects(context, objects, settings, _ProgressLines())
-    _save(output)
-    if report_path is not None:
-        with replaced(report_path) as temporary:
-            temporary.write_text(json.dumps(report, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    # Both files are complete before either takes its name.
+    with ExitStack() as files:
+        _save(files.enter_context(replaced(output)), output)
+        if report_path is not None:
+            text = json.dumps(report, indent=2, ensure_ascii=False) + "\n"
+            files.enter_context(replaced(report_path)).write_text(text, encoding="utf-8")
     _summarise(report, output)
 
 
@@ -192,12 +195,11 @@ def _paths(options: argparse.Namespace) -> tuple[Path, Path | None]:
     return output, report
 
 
-def _save(output: Path) -> None:
-    with replaced(output) as temporary:
-        try:
-            bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
-        except RuntimeError as error:
-            raise CommandError(f"{output} could not be written: {_sentence(error)}") from error
+def _save(temporary: Path, output: Path) -> None:
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
+    except RuntimeError as error:
+        raise CommandError(f"{output} could not be written: {_sentence(error)}") from error
 
 
 def _sentence(error: RuntimeError) -> str:

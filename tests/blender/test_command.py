@@ -162,6 +162,18 @@ def test_a_failed_bake_writes_nothing(room, monkeypatch, capsys):
     assert "Nothing in the scene emits light" in fails(["--output", "baked.blend"], capsys)
 
 
+@pytest.mark.usefixtures("quick_bake")
+def test_a_report_that_cannot_be_written_leaves_no_output_either(room, monkeypatch, capsys):
+    def full(*arguments, **options):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    before = names()
+    assert main(["--output", "baked.blend", "--report", "room.json"]) == 1
+    assert "No space left on device" in capsys.readouterr().err
+    assert names() == before
+
+
 def test_help_explains_every_option(capsys):
     assert main(["--help"]) == 0
     text = capsys.readouterr().out

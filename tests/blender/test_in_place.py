@@ -161,3 +161,19 @@ def test_values_of_the_back_are_removed_when_a_second_bake_has_none(monkeypatch)
     bake(plane)
     assert "Radiosity Back" not in plane.data.color_attributes
     assert len([m for m in bpy.data.materials if "radiosity_display" in m]) == 1
+
+
+def test_a_local_object_with_a_linked_mesh_gets_a_local_copy(tmp_path):
+    add_cube("Linked")
+    path = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.meshes = ["Linked"]
+    (mesh,) = wanted.meshes
+    cube = add_object("Local", mesh)
+    bake(cube)
+    assert cube.data.library is None
+    assert colours_of(cube.data)[:, :3] == pytest.approx(corner_positions(cube), abs=1e-6)
+    bpy.ops.radiosity.restore()
+    assert cube.data == mesh

@@ -105,6 +105,7 @@ def test_the_front_stays_outside_in_mirrored_objects(scale):
     cube.scale = scale
     (output,) = bake(cube)
     assert front_faces_outwards(output)
+    assert not any(polygon.use_smooth for polygon in output.data.polygons)
     assert colours_of(output.data)[:, :3] == pytest.approx(corner_positions(output), abs=1e-6)
 
 
