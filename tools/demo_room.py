@@ -18,7 +18,7 @@ from .blend_rooms import build_room
 from .installed import install_zip
 
 # The baked colours are all that is rendered, so that samples only smooth the edges of things.
-SAMPLES_OF_BAKED = 32
+SAMPLES_OF_BAKED = 128
 
 
 def render(path: Path) -> float:
