@@ -68,10 +68,16 @@ WORKING_COPIES = 6
 RAYS_TO_FIND_CUTS = 64
 """Rays that tell whether a place on an edge is hidden."""
 
+ROUND_SHARE = 0.15
+"""Share of the remaining progress that one batch of traced rows stands for."""
+
+GATHER_SHARE = 0.6
+"""The same for one gather: the first is the largest."""
+
 FEWEST_RAYS_PER_PATCH = 16
 
 MOST_RAYS = 2**25
-"""Rays of the coarsest patches: above it each gets fewer, as the many patches of a dense mesh average each other out."""
+"""Rays of the coarsest patches: above it each gets fewer, as the many patches of a dense mesh average out."""
 
 
 def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress) -> BakeResult:
@@ -104,6 +110,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     rounds = subdivide(transport, lit, settings, smallest, most_rays // per_row, clock)
 
     clock.start("Solving", 0.4, 0.5)
+    transport.lengthen_buried(clock.report)
     cover = transport.separate_cover(clock.report)
     shares = transport.shares()
     emitters = strongest_emitters(surfaces, lit)
@@ -115,9 +122,10 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 
     clock.start("Gathering", 0.5, 0.95)
     radiance = seen_radiance(transport, balance, solution, emitters)
+    gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
 
     def gather_at(places: Receivers) -> Gathered:
-        return gather(transport, radiance, emitters, places, effort.gather, clock.report)
+        return gather(transport, radiance, emitters, places, effort.gather, gathering)
 
     if settings.output == "ORIGINAL":
         shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
@@ -131,7 +139,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     clock.start("Reconstructing", 0.98, 1.0)
     meshes, warnings = baked_meshes(scene, surfaces, faces, face, irradiance, settings.output)
     clock.stop()
-    report: dict[str, Any] = {
+    told: dict[str, Any] = {
         "patches": len(tree.leaves()),
         "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
         "triangles": sum(len(mesh.triangles) for mesh in meshes),
@@ -151,7 +159,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         "settings": asdict(settings),
         "warnings": [*surfaces.warnings, *warnings, *limit_warnings(rounds, solution, per_row, effort)],
     }
-    return BakeResult(meshes, report)
+    return BakeResult(meshes, told)
 
 
 def automatic_size(surfaces: Surfaces, effort: Effort) -> float:
@@ -185,9 +193,7 @@ def subdivide(
         behind = leaves[lit[surfaces.shell_of_triangle[tree.triangle[leaves]], 1]]
         return np.sort(np.concatenate([2 * leaves, 2 * behind + 1]))
 
-    def report(share: float) -> None:
-        clock.report(share, f"{len(tree.leaves()):,} patches, {transport.rays.rays:,} rays")
-
+    report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.leaves()):,} patches, {transport.rays.rays:,} rays")
     if settings.method == "ADAPTIVE":
         return refinement.refine(transport, seeds, settings.threshold, smallest, most_patches, report)
     return refinement.refine_uniformly(transport, seeds, smallest, most_patches, report)

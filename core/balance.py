@@ -106,13 +106,14 @@ def direct_on_patches(
     whole = np.flatnonzero((balance.elements == balance.base) & (cover.twin[balance.base] < 0))
     elements = balance.elements[whole]
     points, normals = sample_points(transport.surfaces, transport.tree, elements, POINTS_PER_PATCH, transport.seed + 51)
+    partly = balance.buried[whole] > 0.0
+    points, normals = points.copy(), normals.copy()
+    points[partly], normals[partly] = transport.open_points(elements[partly], POINTS_PER_PATCH)
     direct[whole] = _direct_at(transport, emitters, elements, points, normals, report).mean(axis=1)
     if len(cover.element):
         light = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
         for rows, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
             direct[number[rows]] = (light * chosen[..., None]).sum(axis=1) / chosen.sum(axis=1)[:, None]
-    # Points inside a solid see no light; the mean is over the others.
-    direct /= np.maximum(1.0 - balance.buried, 1.0 / POINTS_PER_PATCH)[:, None]
     by_rays = balance.exchange.apply(explicit_emission(transport, balance, emitters))
     return direct + by_rays + balance.escape[:, None] * transport.surfaces.world
 

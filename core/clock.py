@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 from .progress import Progress, ProgressCallback
 
@@ -34,6 +35,19 @@ class Clock:
         """Tell the share of the stage that is done; what was told before never goes back."""
         self._share = max(self._share, self._low + (self._high - self._low) * min(share, 1.0))
         self._progress(Progress(self._stage, self._share, detail))
+
+    def repeated(self, part: float, detail: Callable[[], str] = str) -> Callable[[float], None]:
+        """A report for work that is done nobody knows how often: each time it takes `part` of what is left."""
+        done = 0.0
+
+        def report(share: float) -> None:
+            nonlocal done
+            left = part * (1.0 - done)
+            self.report(done + left * share, detail())
+            if share >= 1.0:
+                done += left
+
+        return report
 
     def stop(self) -> None:
         """End the last stage."""

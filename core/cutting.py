@@ -111,7 +111,6 @@ def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Re
         normals=normalized(mixed(places.normals)),
         lift=normalized(mixed(places.lift)),
         codes=places.codes[cuts.seen],
-        keys=places.keys[cuts.seen],
         inward=inward,
         sizes=places.sizes[cuts.seen] * (1.0 - share) + places.sizes[cuts.hidden] * share,
         of_corner=np.zeros((0, 3), dtype=np.int64),

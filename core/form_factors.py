@@ -13,8 +13,8 @@ def point_to_triangle(points: Floats, normals: Floats, triangles: Floats) -> Flo
     """Form factor from a surface element to a triangle, without occlusion.
 
     Lambert's formula, F = 1/(2 pi) sum over edges of the angle an edge subtends times the cosine between the normal and
-    the plane through the edge (Lambert 1760; Baum, Rushmeier & Winget 1989, eq. 8), summed over the part of the triangle
-    above the horizon.
+    the plane through the edge (Lambert 1760; Baum, Rushmeier & Winget 1989, eq. 8), summed over the part of the
+    triangle above the horizon.
 
     Parameters
     ----------

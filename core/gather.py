@@ -96,6 +96,8 @@ def gather(
 ) -> Gathered:
     """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`."""
     total = len(receivers.points)
+    if total == 0:
+        return Gathered(np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=bool))
 
     patterns = Patterns.make(0, counts.hemisphere, transport.seed + 101)
 
@@ -139,8 +141,10 @@ def _looked(
 ) -> tuple[NDArray[np.int32], Singles]:
     """What the rays of receivers meet, and how far away, both (n, r)."""
     rays = patterns.directions.shape[1]
-    pattern, angle = patterns.choose(receivers.keys[part], transport.seed + 101)
-    directions = (patterns.directions[pattern] @ frames(receivers.normals[part], angle)).reshape(-1, 3)
+    # All receivers take the same pattern: what it misses then changes slowly over a surface instead of mottling it, at
+    # the same error.
+    normals = receivers.normals[part]
+    directions = (patterns.directions[0] @ frames(normals, np.zeros(len(normals)))).reshape(-1, 3)
     lift = receivers.lift[part].astype(np.float32)
     origins = np.repeat(transport.rays.local(receivers.points[part]) + lift * np.float32(OFFSET), rays, axis=0)
     count = len(lift)
@@ -176,7 +180,7 @@ def _direct(
                 receivers.points[part],
                 receivers.normals[part],
                 receivers.lift[part],
-                receivers.keys[part],
+                np.zeros(len(part), dtype=np.int64),
                 rays,
                 transport.seed + salt,
             )

@@ -48,7 +48,7 @@ def welded(points: Floats) -> Ints:
 
 
 def connected_components(pairs: Ints, count: int) -> Ints:
-    """Label of the connected component of each of `count` things joined by `pairs` (m, 2): its lowest member, (count,)."""
+    """Label each of `count` things joined by `pairs` (m, 2) with the lowest member of its component, (count,)."""
     label = np.arange(count, dtype=np.int64)
     while True:
         ends = label[pairs]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The hierarchy of patches: triangles that split at their edge midpoints, and the way from a hit to the leaf under it."""
+"""The hierarchy of patches: triangles that split at their edge midpoints."""
 
 from __future__ import annotations
 

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which sides of which shells light can reach: a few thousand random walks from the emitters and the world.
 
-A closed mesh may be a solid, whose inside no light enters, or a room seen from within; a box without a bottom on a floor
-is as good as a solid. Only the light can tell. Rays that meet an unreached side started inside a solid (on a floor that
-runs on under a block) and are dropped.
+A closed mesh may be a solid, whose inside no light enters, or a room seen from within; a box without a bottom on a
+floor is as good as a solid. Only the light can tell. Rays that meet an unreached side started inside a solid (on a
+floor that runs on under a block) and are dropped.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ LEAST_VISITS = 3
 """Visits that make a side lit: one or two may be rays that slipped through an edge."""
 
 EXPECTED_VISITS = 20.0
-"""Visits to be expected by its area without which an open shell is too small for its unvisited sides to mean anything."""
+"""Visits to be expected by its area without which an unvisited side of a shell means nothing."""
 
 
 def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_]:

@@ -33,8 +33,6 @@ class Receivers:
         Position, shading normal (the axis of the hemisphere) and unit normal of the surface itself.
     codes : (n,) int, ascending
         Numbers that tell the place, normal and side: equal for the same receiver of another subdivision.
-    keys : (n,) int
-        Number for the sampling pattern: the same for all receivers at a place, so that hard edges do not shimmer.
     inward : (n, 3) float, scene units
         How far the position is off the vertex.
     sizes : (n,) float, scene units
@@ -47,7 +45,6 @@ class Receivers:
     normals: Floats
     lift: Floats
     codes: Ints
-    keys: Ints
     inward: Floats
     sizes: Floats
     of_corner: Ints
@@ -93,7 +90,6 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         normalized(mean(shading)),
         lift,
         codes,
-        place[first],
         INWARD * inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         group.reshape(-1, 3),

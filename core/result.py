@@ -15,7 +15,8 @@ class BakedMesh:
     """The baked values of one mesh, for each corner of its output triangles.
 
     With `output='ORIGINAL'` the triangles are the input's own, in the same order. With `'REFINED'` they are the
-    conforming subdivision: `vertices[:v]` are the input's vertices, and every output triangle lies in one input triangle.
+    conforming subdivision: `vertices[:v]` are the input's vertices, and every output triangle lies in one of the
+    input's; triangles without area are left out.
 
     Attributes
     ----------

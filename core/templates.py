@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a triangle is cut when some of its edges have a vertex on them: red-green closure (Bank, Sherman & Weiser 1983)."""
+"""How a triangle is cut when its edges have a vertex on them: red-green closure (Bank, Sherman & Weiser 1983)."""
 
 from __future__ import annotations
 

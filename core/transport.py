@@ -329,6 +329,32 @@ class Transport:
             moved += len(stale)
         return moved
 
+    def lengthen_buried(self, report: Callable[[float], None] = lambda share: None) -> None:
+        """Trace more rays for elements most of whose rays started inside a solid: those left are too few to tell."""
+        table = self.tables[0]
+        few = (table.valid > 0) & (2 * table.valid < table.hits.shape[1])
+        if few.any():
+            self.lengthen(np.sort(table.element[few]), report)
+
+    def open_points(self, elements: Ints, count: int) -> tuple[Floats, Floats]:
+        """Points of elements from which a ray left that did not start inside a solid, and normals, (m, count, 3)."""
+        weights = np.zeros((len(elements), count, 2))
+        place = np.full(2 * len(self.tree), -1, dtype=np.int64)
+        positions = np.concatenate([patterns.positions for patterns in self._patterns], axis=1)
+        pattern, _ = self._patterns[0].choose(elements, self.seed)
+        for table in self.tables:
+            place[:] = -1
+            place[table.element] = np.arange(len(table.element))
+            here = np.flatnonzero(place[elements] >= 0)
+            row = place[elements[here]]
+            first_valid = np.argsort(table.hits[row] == BURIED, axis=1, kind="stable")
+            turn = np.arange(count) % np.maximum(table.valid[row], 1)[:, None]
+            ray = np.take_along_axis(first_valid, turn, axis=1)
+            weights[here] = positions[pattern[here][:, None], ray, 1:]
+        normals = element_normals(self.surfaces, self.tree, elements)
+        points = points_in(self.tree, elements >> 1, weights)
+        return points, np.broadcast_to(normals[:, None], points.shape)
+
     def separate_cover(self, report: Callable[[float], None] = lambda share: None) -> Cover:
         """Find the elements that are covered in part, and send short rays to their twins; ends refinement."""
         tree = self.tree

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -32,8 +33,9 @@ BATCHES_IN_FLIGHT = 4
 """Batches queued for each thread, so that none idles while the main one reports."""
 
 
+@cache
 def ray_library_problem() -> str | None:
-    """Return why the ray library cannot be used, as a sentence, or None if it can."""
+    """Return why the ray library cannot be used, as a sentence, or None if it can; asked at every redraw."""
     try:
         _library()
     except RayLibraryError as error:
@@ -41,6 +43,7 @@ def ray_library_problem() -> str | None:
     return None
 
 
+@cache
 def _library() -> Any:
     try:
         from embreex import mesh_construction, rtcore_scene
