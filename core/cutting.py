@@ -219,7 +219,7 @@ def cut_faces(
 
     unseen = hidden[of_corner]
     # A piece lies on the side of the corners it has; one between three cuts has none and counts as seen.
-    piece_hidden = np.where(piece < 3, unseen[row, np.minimum(piece, 2)], False).any(axis=1)
+    piece_hidden: NDArray[np.bool_] = np.any((piece < 3) & unseen[row, np.minimum(piece, 2)], axis=1)
     front = interpolated(values[:count], on_face.share)
     own = on_face.own >= 0
     sides = []

@@ -54,8 +54,9 @@ class Lit:
 
     def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
         """Face sides whose error counts: neither emitters nor hidden altogether, (f,)."""
-        emitting = surfaces.emission[self.faces.triangle[self.face]].any(axis=1)
-        return ~emitting & ~self.gathered.hidden[self.places.of_corner].all(axis=1)
+        dark = np.all(surfaces.emission[self.faces.triangle[self.face]] == 0.0, axis=1)
+        shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
+        return dark & shown
 
     def error(self, surfaces: Surfaces) -> float:
         """Estimated RMS error over the surface, relative to its mean."""

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .direct import LUMINANCE
 from .scene import Floats, Ints
@@ -59,7 +60,9 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     return np.sqrt(square)
 
 
-def relative_error(corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: np.ndarray) -> float:
+def relative_error(
+    corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: NDArray[np.bool_]
+) -> float:
     """Estimated RMS error over the surface relative to its mean: interpolation and noise added in squares.
 
     Parameters

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .result import BakedMesh
 from .scene import Floats, Ints, Scene
@@ -48,7 +49,9 @@ def baked_meshes(
     return tuple(meshes), warnings
 
 
-def _lit_from_behind(surfaces: Surfaces, faces: Faces, front: Floats, back: Floats, has_back: np.ndarray) -> np.ndarray:
+def _lit_from_behind(
+    surfaces: Surfaces, faces: Faces, front: Floats, back: Floats, has_back: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
     """Faces of shells whose front gets no light at all while their back does, (s,) bool."""
     shell = surfaces.shell_of_triangle[faces.triangle]
     size = len(surfaces.closed)
@@ -90,7 +93,13 @@ def _original(
 
 
 def _refined(
-    surfaces: Surfaces, faces: Faces, number: int, chosen: Ints, front: Floats, back: Floats | None, turned: np.ndarray
+    surfaces: Surfaces,
+    faces: Faces,
+    number: int,
+    chosen: Ints,
+    front: Floats,
+    back: Floats | None,
+    turned: NDArray[np.bool_],
 ) -> BakedMesh:
     """The conforming subdivision of one mesh, shells that are lit from behind turned over."""
     first, last = surfaces.first_point_of_mesh[number : number + 2]

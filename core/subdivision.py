@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import templates
 from .geometry import normalized
@@ -86,13 +87,14 @@ def _edge_middles(tree: PatchTree, corners: Ints) -> Ints:
     return tree.midpoints(corners, np.roll(corners, -1, axis=1))
 
 
-def _twice_halved(tree: PatchTree, corners: Ints, middles: Ints) -> np.ndarray:
+def _twice_halved(tree: PatchTree, corners: Ints, middles: Ints) -> NDArray[np.bool_]:
     """Whether half of an edge has a midpoint of its own, (m,) bool."""
     present = middles >= 0
     middle = np.where(present, middles, corners)
     first = tree.midpoints(corners, middle) >= 0
     second = tree.midpoints(middle, np.roll(corners, -1, axis=1)) >= 0
-    return (present & (first | second)).any(axis=1)
+    twice: NDArray[np.bool_] = np.any(present & (first | second), axis=1)
+    return twice
 
 
 def _closed_by_templates(tree: PatchTree, leaves: Ints, middles: Ints) -> Faces:
