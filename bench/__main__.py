@@ -22,9 +22,9 @@ from .scenes import SCENES
 
 DEFAULT_SCENES = ("cornell_box", "corridor", "furnished_room", "pillar_hall", "statue")
 
-# Minimum size of the uniform mesh that Cycles bakes, about an eleventh of the room's height.
-CYCLES_SIZE = {"cornell_box": 0.05, "paper_scene_1": 0.25, "corridor": 0.25, "furnished_room": 0.2}
-CYCLES_SIZE |= {"pillar_hall": 0.4, "statue": 0.25}
+# Minimum size of the uniform mesh that Cycles bakes: fine enough that its noise, not the mesh, decides at first.
+CYCLES_SIZE = {"cornell_box": 0.02, "paper_scene_1": 0.1, "corridor": 0.1, "furnished_room": 0.1}
+CYCLES_SIZE |= {"pillar_hall": 0.4, "statue": 0.1}
 
 Entry = dict[str, Any]
 
