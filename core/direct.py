@@ -182,7 +182,8 @@ def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, lift: 
     value = (cosines + 0.01 * (cosines > 0.0)) * emitters.areas / (square + emitters.areas)
     value = np.where((height > 0.0) & (above > 0.0) & (facing > 0.0), value, 0.0) * (emitters.radiance @ LUMINANCE)
     total = value.sum(axis=1, keepdims=True)
-    return np.divide(value, total, out=np.zeros_like(value), where=total > 0.0)
+    result: Floats = np.divide(value, total, out=np.zeros_like(value), where=total > 0.0)
+    return result
 
 
 def _systematic_draw(share: Floats, draws: int, offset: Floats) -> Ints:

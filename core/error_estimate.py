@@ -26,7 +26,8 @@ def gradients(corners: Floats, values: Floats) -> Floats:
     det = g11 * g22 - g12 * g12
     det = np.where(det > 0.0, det, np.inf)
     a, b = (d1 * g22 - d2 * g12) / det, (d2 * g11 - d1 * g12) / det
-    return a[:, None] * e1 + b[:, None] * e2
+    result: Floats = a[:, None] * e1 + b[:, None] * e2
+    return result
 
 
 def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Floats:

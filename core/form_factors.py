@@ -52,4 +52,5 @@ def _edge_term(start: Floats, end: Floats, normal: Floats) -> Floats:
     length = np.sqrt(np.einsum("...x,...x->...", across, across))
     angle = np.arctan2(length, np.einsum("...x,...x->...", start, end))
     along = np.einsum("...x,...x->...", across, normal)
-    return np.divide(angle * along, length, out=np.zeros_like(length), where=length > 0.0)
+    result: Floats = np.divide(angle * along, length, out=np.zeros_like(length), where=length > 0.0)
+    return result

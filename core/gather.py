@@ -160,7 +160,8 @@ def _is_hidden(
 ) -> NDArray[np.bool_]:
     reach = COVER_GAP * transport.rays.scale * sizes
     covered = (distance < reach[:, None]).mean(axis=1) > LEAST_COVERED_SHARE
-    return covered | ((elements == BURIED).mean(axis=1) > 1.0 - LEAST_VALID_SHARE)
+    result: NDArray[np.bool_] = covered | ((elements == BURIED).mean(axis=1) > 1.0 - LEAST_VALID_SHARE)
+    return result
 
 
 def _direct(

@@ -44,7 +44,8 @@ def welded(points: Floats) -> Ints:
     cells = np.rint((points - low) * (WELD_CELLS / extent if extent > 0.0 else 0.0)).astype(np.int64)
     key = (cells[:, 0] * (WELD_CELLS + 1) + cells[:, 1]) * (WELD_CELLS + 1) + cells[:, 2]
     _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
-    return first[inverse].astype(np.int64)
+    result: Ints = first[inverse].astype(np.int64)
+    return result
 
 
 def connected_components(pairs: Ints, count: int) -> Ints:

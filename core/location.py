@@ -71,7 +71,7 @@ class Locator:
         i = np.clip(u.astype(np.int32), 0, last)
         j = np.clip(v.astype(np.int32), 0, last)
         upper = (u - i) + (v - j) > 1.0
-        leaf = self._leaf[self._first[root] + (((i << depth) + j) << 1) + upper]
+        leaf: NDArray[np.int32] = self._leaf[self._first[root] + (((i << depth) + j) << 1) + upper]
         deeper = np.flatnonzero(leaf < 0)
         if len(deeper):
             leaf[deeper], _ = self._tree.descend(root[deeper].astype(np.int64), weights[deeper])

@@ -57,7 +57,8 @@ def _lit_from_behind(
     size = len(surfaces.closed)
     on_front = np.bincount(shell, weights=front.sum(axis=(1, 2)), minlength=size)
     on_back = np.bincount(shell, weights=back.sum(axis=(1, 2)) * has_back, minlength=size)
-    return ((on_front == 0.0) & (on_back > 0.0))[shell]
+    result: NDArray[np.bool_] = ((on_front == 0.0) & (on_back > 0.0))[shell]
+    return result
 
 
 def _original(

@@ -132,7 +132,8 @@ def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
     """Closed shells that emit all over, such as a bulb: light inside that only meets the shell itself is of no use."""
     emits = surfaces.emission.any(axis=1)
     dark = np.bincount(surfaces.shell_of_triangle, weights=~emits, minlength=len(surfaces.closed))
-    return surfaces.closed & (dark == 0)
+    result: NDArray[np.bool_] = surfaces.closed & (dark == 0)
+    return result
 
 
 def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:

@@ -36,7 +36,8 @@ def _steps(dimensions: int) -> tuple[float, ...]:
 def sequence(first: int, count: int, dimensions: int) -> Floats:
     """Points `first` to `first + count - 1` of the recurrence, (count, dimensions), in [0, 1)."""
     index = np.arange(first + 1, first + count + 1, dtype=np.float64)
-    return np.mod(index[:, None] * np.array(_steps(dimensions)), 1.0)
+    result: Floats = np.mod(index[:, None] * np.array(_steps(dimensions)), 1.0)
+    return result
 
 
 def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
@@ -93,7 +94,8 @@ def frames(normals: Floats, angles: Floats) -> Singles:
 def cosine_directions(square: Floats, normals: Floats) -> Floats:
     """One direction for each normal with density cos / pi about it: (n, 2) and (n, 3) give (n, 3)."""
     frame = frames(normals, np.zeros(len(normals)))
-    return np.einsum("nk,nkx->nx", hemisphere(square), frame.astype(np.float64))
+    result: Floats = np.einsum("nk,nkx->nx", hemisphere(square), frame.astype(np.float64))
+    return result
 
 
 @dataclass(frozen=True, eq=False)

@@ -52,7 +52,8 @@ def points_in(tree: PatchTree, nodes: Ints, weights: Floats) -> Floats:
     """Positions of barycentric weights (m, r, 2) of corners 1 and 2 in nodes (m,): (m, r, 3)."""
     a, b, c = (tree.points[tree.corners[nodes, k]][:, None] for k in range(3))
     u, v = weights[..., :1], weights[..., 1:]
-    return a + (b - a) * u + (c - a) * v
+    result: Floats = a + (b - a) * u + (c - a) * v
+    return result
 
 
 def sample_points(surfaces: Surfaces, tree: PatchTree, elements: Ints, count: int, seed: int) -> tuple[Floats, Floats]:
