@@ -107,7 +107,17 @@ class RealBlender:
         return ready.is_file() and ready.read_text(encoding="utf-8") == self._recipe
 
     def prepare(self) -> None:
-        """Make the folder unless it is there."""
+        """Make the folder unless it is there.
+
+        Raises
+        ------
+        RealBlenderError
+            When this machine cannot make or enter it.
+        """
+        try:
+            root_prefix()
+        except DebianError as error:
+            raise RealBlenderError(str(error)) from error
         if self.is_ready():
             return
         self.base.mkdir(parents=True, exist_ok=True)
@@ -135,9 +145,13 @@ class RealBlender:
             raise RealBlenderError(f"mmdebstrap could not unpack Debian {self.suite}'s Blender:\n{tail}")
         self._add_python_packages()
         self._finish()
-        done = subprocess.run(self.command(["blender", "--background", "--version"]), capture_output=True, check=False)
+        self._must_run("blender", "--background", "--version")
+
+    def _must_run(self, *arguments: str) -> None:
+        """Run a command inside that cannot fail unless this machine forbids namespaces, or the folder is broken."""
+        done = subprocess.run(self.command(arguments), capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            raise RealBlenderError(f"the unpacked Blender does not start: {done.stderr.decode(errors='replace')}")
+            raise RealBlenderError(f"`{' '.join(arguments)}` does not run in {self.root}: {done.stderr.strip()}")
 
     def _add_python_packages(self) -> None:
         """Unpack wheels beside Debian's Python modules."""
@@ -161,7 +175,7 @@ class RealBlender:
         certificates = sorted((self.root / "usr/share/ca-certificates/mozilla").glob("*.crt"))
         bundle = self.root / "etc/ssl/certs/ca-certificates.crt"  # requests cannot be imported without it
         bundle.write_text("".join(path.read_text(encoding="utf-8") for path in certificates), encoding="utf-8")
-        subprocess.run(self.command(["ldconfig"]), check=True)
+        self._must_run("ldconfig")
 
     def command(
         self,
