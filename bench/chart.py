@@ -58,4 +58,7 @@ def _panel(axes: Any, entries: list[dict[str, Any]], key: str) -> None:
         axes.plot(*zip(*points, strict=True), "o-", markersize=4, label=method, color=COLOURS.get(method))
     axes.set_xscale("log")
     axes.set_yscale("log")
+    for kind in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+        kind(lambda value, _: f"{value:g}")
+    axes.tick_params(axis="y", which="minor", labelsize=7)
     axes.grid(visible=True, which="both", alpha=0.25)
