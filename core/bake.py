@@ -55,7 +55,7 @@ class Effort:
 
 EFFORTS = {
     "DRAFT": Effort(4_000, 32, 0.04, GatherRays(64, 16, 32)),
-    "GOOD": Effort(16_000, 64, 0.01, GatherRays(256, 16, 96)),
+    "GOOD": Effort(16_000, 64, 0.01, GatherRays(384, 16, 96)),
     "HIGH": Effort(64_000, 128, 0.005, GatherRays(1024, 32, 384)),
 }
 

@@ -48,6 +48,8 @@ DEBIAN_PACKAGE_OF_LIBRARY = {
     "libxkbcommon.so.0": "libxkbcommon0",
 }
 
+LLVM_VERSIONS = (19, 18, 17, 16, 15, 14)
+
 
 class MissingEnvironmentError(Exception):
     """An environment cannot be made; the text says what is missing."""
@@ -186,6 +188,20 @@ def install_missing_libraries(environment: Environment) -> None:
         install(sorted({DEBIAN_PACKAGE_OF_LIBRARY[library] for library in missing}))
 
 
+def install_llvm() -> None:
+    """Install LLVM's library, which Mitsuba compiles with, unless some version of it is there."""
+    if any(Path("/usr/lib").glob("*/libLLVM*.so*")):
+        return
+    for version in LLVM_VERSIONS:
+        try:
+            install([f"libllvm{version}"])
+        except DebianError as error:
+            last_error = error
+        else:
+            return
+    raise last_error
+
+
 def make_all(extra: tuple[Path, ...] = ()) -> list[Environment]:
     """Make every environment whose Python this machine has, and let `.venv/main` be the newest; the extra
     requirements go into that one."""
@@ -212,8 +228,11 @@ def make_all(extra: tuple[Path, ...] = ()) -> list[Environment]:
 
 
 def main(arguments: list[str]) -> int:
+    for_benchmarks = arguments == ["bench"]
     try:
-        make_all((REQUIREMENTS / "bench.txt",) if arguments == ["bench"] else ())
+        make_all((REQUIREMENTS / "bench.txt",) if for_benchmarks else ())
+        if for_benchmarks:
+            install_llvm()
     except (MissingEnvironmentError, DebianError) as error:
         print(f"environments: {error}", file=sys.stderr)
         return 1
