@@ -62,6 +62,9 @@ EFFORTS = {
 BYTES_PER_VERTEX = 4096
 """Of the receivers, faces and values of a vertex, with the working copies made of them."""
 
+FINER_FACES = 8.0
+"""Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
+
 WORKING_COPIES = 6
 """Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
 
@@ -101,6 +104,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 
     clock.start("Coarse patches", 0.02, 0.03)
     smallest = settings.minimum_size or automatic_size(surfaces, effort)
+    finest = smallest if settings.minimum_size or settings.method == "UNIFORM" else smallest / FINER_FACES
     tree = coarse_patches(surfaces, smallest)
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
     per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
@@ -132,7 +136,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
     else:
         most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
-        shown = light_up_in_detail(surfaces, lit, tree, smallest, effort.tolerance, most_vertices, gather_at)
+        shown = light_up_in_detail(surfaces, lit, tree, finest, effort.tolerance, most_vertices, gather_at)
         clock.start("Cutting", 0.95, 0.98)
         faces, face, irradiance = cut_where_hidden(transport, gather_at, shown)
 
@@ -153,7 +157,8 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         "estimated_error": shown.error(surfaces),
         "form_factor_standard_error": refinement.largest_standard_error(shares),
         "energy": energy(balance, solution, surfaces),
-        "minimum_size": smallest,
+        "minimum_size": finest,
+        "minimum_patch_size": smallest,
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
         "settings": asdict(settings),

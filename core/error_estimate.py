@@ -11,6 +11,11 @@ from .direct import LUMINANCE
 from .scene import Floats, Ints
 
 
+SAFETY = 2.0
+"""What the estimate is multiplied by: it cannot see the error of the patches' own radiosity, nor a shadow that falls
+between all vertices; on the benchmark's scenes the true error is up to 1.6 times what it can see."""
+
+
 def gradients(corners: Floats, values: Floats) -> Floats:
     """Gradient of a linear function on each triangle, in its plane, (f, 3).
 
@@ -64,7 +69,7 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
 def relative_error(
     corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: NDArray[np.bool_]
 ) -> float:
-    """Estimated RMS error over the surface relative to its mean: interpolation and noise added in squares.
+    """Estimated RMS error over the surface relative to its mean: interpolation and noise added in squares, times `SAFETY`.
 
     Parameters
     ----------
@@ -86,4 +91,4 @@ def relative_error(
     # Noise is independent from vertex to vertex; a linear mix of three keeps half of its variance on average.
     square = missed**2 + (noise[of_corner] ** 2).mean(axis=1) / 2.0
     mean = float((weight * luminance.mean(axis=1)).sum())
-    return float(np.sqrt((weight * square).sum()) / mean) if mean > 0.0 else 0.0
+    return float(SAFETY * np.sqrt((weight * square).sum()) / mean) if mean > 0.0 else 0.0
