@@ -140,9 +140,14 @@ def room_walls(size: ArrayLike, reflectances: Sequence[ArrayLike]) -> tuple[Surf
 
 
 def panel(name: str, low: ArrayLike, size: tuple[float, float], emission: ArrayLike = LAMP) -> SurfaceMesh:
-    """Return a flat lamp that looks down."""
-    x, y = size
-    return exact.rectangle(name, low, (0, y, 0), (x, 0, 0), reflectance=0.0, emission=emission)
+    """Return a lamp 2 cm thick that glows below and is grey on its other sides.
+
+    A lone rectangle would glow on both sides and light the ceiling behind it more than all the rest of the room.
+    """
+    case = block(name, low, (*size, 0.02))
+    glow = np.zeros((len(case.triangles), 3))
+    glow[:2] = emission  # `closed_room` begins with the bottom
+    return surface_mesh(name, case.vertices, case.triangles, reflectance=case.reflectance, emission=glow)
 
 
 # ---------------------------------------------------------------------------------------------------- the scenes
@@ -295,7 +300,7 @@ def pillar_hall(rows: int = 10) -> Scene:
     for i in range(3):
         for j in range(3):
             x, y = (step * round((k + 0.5) * rows / 3) for k in (i, j))
-            meshes.append(panel(f"Lamp {3 * i + j + 1}", (x - 0.3, y - 0.3, height - 0.02), (0.6, 0.6)))
+            meshes.append(panel(f"Lamp {3 * i + j + 1}", (x - 0.3, y - 0.3, height - 0.05), (0.6, 0.6)))
     return Scene(tuple(meshes), DARKNESS)
 
 
