@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from .direct import LUMINANCE
 from .scene import Floats, Ints
 
-
 SAFETY = 2.0
 """What the estimate is multiplied by: it cannot see the error of the patches' own radiosity, nor a shadow that falls
 between all vertices; on the benchmark's scenes the true error is up to 1.6 times what it can see."""
@@ -69,7 +68,7 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
 def relative_error(
     corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, counted: NDArray[np.bool_]
 ) -> float:
-    """Estimated RMS error over the surface relative to its mean: interpolation and noise added in squares, times `SAFETY`.
+    """Estimate the RMS error relative to the mean: interpolation and noise added in squares, times `SAFETY`.
 
     Parameters
     ----------
