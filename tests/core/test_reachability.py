@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which sides light reaches: rooms from inside, solids, sheets, whatever way their normals point."""
+
+import numpy as np
+import pytest
+from radiosity_bake.core.reachability import lit_sides
+from radiosity_bake.core.scene import Scene, surface_mesh
+from radiosity_bake.core.surfaces import join
+from radiosity_bake.core.visibility import RayScene
+
+from tests.core.building import DARK, block, flipped
+from tests.scenes import exact
+
+LAMP = exact.rectangle("lamp", (0.7, 0.7, 1.9), (0, 0.6, 0), (0.6, 0, 0), emission=5.0)
+ROOM = exact.closed_room((2, 2, 2), reflectance=0.5)
+SHEET = exact.rectangle("sheet", (0.5, 0.5, 1.0), (1, 0, 0), (0, 1, 0), reflectance=0.5)
+
+
+def lit(*meshes, world=DARK, seed=0):
+    """Front and back of each mesh's first shell, by name."""
+    surfaces = join(Scene(meshes, np.asarray(world, dtype=float)))
+    sides = lit_sides(surfaces, RayScene(surfaces.points, surfaces.triangles, 2), seed)
+    first = [np.flatnonzero(surfaces.mesh_of_triangle == k)[0] for k in range(len(meshes))]
+    return {m.name: tuple(sides[surfaces.shell_of_triangle[f]].tolist()) for m, f in zip(meshes, first, strict=True)}
+
+
+def test_a_room_is_lit_on_the_inside():
+    assert lit(ROOM, LAMP)["room"] == (True, False)
+
+
+def test_a_room_whose_normals_look_outward_is_lit_on_its_back():
+    assert lit(flipped(ROOM), LAMP)["room"] == (False, True)
+
+
+def test_a_solid_is_lit_on_the_outside():
+    assert lit(ROOM, LAMP, block("block", (0.5, 0.5, 0.2), (1, 1, 0.8)))["block"] == (True, False)
+
+
+def test_a_solid_with_flipped_normals_is_lit_on_its_back():
+    assert lit(ROOM, LAMP, flipped(block("block", (0.5, 0.5, 0.2), (1, 1, 0.8))))["block"] == (False, True)
+
+
+@pytest.mark.parametrize("bottom", [True, False])
+def test_a_box_on_the_floor_is_dark_inside_with_or_without_a_bottom(bottom):
+    assert lit(ROOM, LAMP, block("block", (0.5, 0.5, 0.0), (1, 1, 0.8), bottom=bottom))["block"] == (True, False)
+
+
+def test_a_box_without_a_bottom_in_the_air_is_lit_inside_too():
+    assert lit(ROOM, LAMP, block("block", (0.5, 0.5, 0.6), (1, 1, 1.4), bottom=False))["block"] == (True, True)
+
+
+def test_an_open_sheet_in_a_room_is_lit_on_both_sides():
+    assert lit(ROOM, LAMP, SHEET)["sheet"] == (True, True)
+
+
+def test_a_ceiling_above_a_closed_room_is_lit_from_within_alone():
+    walls = exact.box_walls((2, 2, 2), reflectance=0.5)
+    sides = lit(*walls, LAMP)
+    assert set(sides.values()) == {(True, False), (True, True)}
+    assert sides["floor"] == sides["ceiling"] == sides["north"] == (True, False)
+
+
+def test_a_sheet_whose_front_looks_away_from_the_only_lamp_is_lit_on_its_back():
+    black = exact.closed_room((2, 2, 2), reflectance=0.0)
+    wide = exact.rectangle("sheet", (0, 0, 1.0), (0, 2, 0), (2, 0, 0), reflectance=0.5)
+    assert lit(black, LAMP, wide)["sheet"] == (False, True)
+
+
+def test_a_bulb_emits_outward_alone():
+    bulb = block("bulb", (0.9, 0.9, 1.2), (1.1, 1.1, 1.4), emission=5.0)
+    sides = lit(ROOM, bulb)
+    assert sides["bulb"] == (True, False)
+    assert sides["room"] == (True, False)
+
+
+def test_the_world_lights_a_solid_outside_and_an_open_plane_on_both_sides():
+    plane = exact.rectangle("plane", (-2, -2, -1), (4, 0, 0), (0, 4, 0), reflectance=0.5)
+    sides = lit(block("block", (0, 0, 0), (1, 1, 1)), plane, world=(1, 1, 1))
+    assert sides == {"block": (True, False), "plane": (True, True)}
+
+
+def test_the_world_reaches_a_closed_room_on_its_outside_alone():
+    assert lit(ROOM, world=(1, 1, 1))["room"] == (False, True)
+
+
+def test_the_world_enters_through_a_window():
+    walls = exact.box_walls((2, 2, 2), reflectance=0.5)
+    assert lit(*walls[:5], world=(1, 1, 1))["floor"] == (True, True)
+
+
+def test_what_no_light_reaches_counts_as_lit_in_front():
+    sealed = exact.box_walls((1, 1, 1), reflectance=0.5, origin=(5, 5, 5))
+    sides = lit(ROOM, LAMP, exact.closed_room((0.5, 0.5, 0.5), reflectance=0.5, name="inner"), *sealed)
+    assert sides["floor"][0]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_answer_does_not_depend_on_the_seed(seed):
+    sides = lit(ROOM, LAMP, SHEET, block("block", (0.5, 0.5, 0.0), (1, 1, 0.4), bottom=False), seed=seed)
+    assert sides == {"room": (True, False), "lamp": (True, True), "sheet": (True, True), "block": (True, False)}
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e5])
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_the_answer_does_not_depend_on_size_or_place(scale, offset):
+    meshes = (ROOM, LAMP, block("block", (0.5, 0.5, 0.0), (1, 1, 0.8), bottom=False))
+    placed = [
+        surface_mesh(m.name, m.vertices * scale + offset * scale, m.triangles, reflectance=0.5, emission=m.emission)
+        for m in meshes
+    ]
+    assert lit(*placed) == {"room": (True, False), "lamp": (True, True), "block": (True, False)}
+
+
+def test_solids_too_small_for_walks_to_meet_are_solids():
+    corners = [np.array([0.1 + 0.1 * (i % 15), 0.1 + 0.1 * (i // 15), 0.0]) for i in range(30)]
+    small = [block(f"block {i}", low, low + 0.02) for i, low in enumerate(corners)]
+    sides = lit(ROOM, LAMP, *small)
+    assert all(sides[m.name] == (True, False) for m in small)
