@@ -45,5 +45,5 @@ format: venv ## Format, and mend what the linter can mend
 	@$(MAIN) -m ruff check --fix .
 
 clean: ## Remove what was built and made; the cache outside the checkout stays
-	rm -rf .venv .cache .mypy_cache .ruff_cache .pytest_cache dist out wheels
+	rm -rf .venv .cache .hypothesis .mypy_cache .ruff_cache .pytest_cache dist out wheels
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

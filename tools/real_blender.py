@@ -190,7 +190,7 @@ class RealBlender:
         shown = _without_nested([ROOT, Path.cwd(), *binds])
         variables = {
             "PATH": "/usr/bin:/usr/sbin",
-            "HOME": "/root",
+            "HOME": "/tmp",
             "LANG": "C.UTF-8",
             "PYTHONDONTWRITEBYTECODE": "1",
             "LIBGL_ALWAYS_SOFTWARE": "1",
