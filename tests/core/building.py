@@ -17,6 +17,7 @@ from radiosity_bake.core.transport import Transport
 from radiosity_bake.core.visibility import RayScene
 
 from tests.scenes import exact
+from tools import rooms
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -83,6 +84,15 @@ def room_with_block(reflectance: float = 0.5, **options: object) -> Scene:
     lamp = exact.rectangle("lamp", (0.7, 0.7, 1.95), (0, 0.6, 0), (0.6, 0, 0), emission=(5.0, 4.0, 3.0))
     walls = exact.box_walls((2, 2, 2), reflectance=reflectance)
     return Scene((*walls, lamp, block("block", (0.5, 0.6, 0.0), (1.1, 1.2, 0.8), turned=25.0, **options)), DARK)
+
+
+def cornell_box() -> Scene:
+    """Return the Cornell box with its lamp set into the ceiling, polygons cut into fans."""
+    meshes = []
+    for s in rooms.cornell_box_set_in():
+        triangles = [(f[0], f[k], f[k + 1]) for f in s.faces for k in range(1, len(f) - 1)]
+        meshes.append(surface_mesh(s.name, s.vertices, triangles, reflectance=s.reflectance, emission=s.emission))
+    return Scene(tuple(meshes), DARK)
 
 
 def moved(scene: Scene, scale: float = 1.0, by: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:

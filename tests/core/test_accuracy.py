@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Cornell box against a converged path tracer (tests/core/data/make_cornell_box.py makes the reference)."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.settings import BakeSettings
+
+from tests.core.building import values_at
+
+FILE = Path(__file__).parent / "data" / "cornell_box.npz"
+
+MOST_RMS = 0.08
+"""Relative RMS error at area-uniform points that a bake at GOOD may have."""
+
+MOST_FACE_BIAS = 0.03
+"""How far the mean over any face may be off."""
+
+FEWEST_PROBES = 30
+
+
+class Compared:
+    """A bake at the probes of the reference."""
+
+    def __init__(self, scene, settings):
+        with np.load(FILE) as stored:
+            self.truth = stored["irradiance"].astype(float)
+            self.variance = float(stored["variance"])
+            mesh, triangle = stored["mesh"].astype(int), stored["triangle"].astype(int)
+            position = stored["position"].astype(float)
+        self.report = (result := bake(scene, settings)).report
+        self.values = np.full_like(self.truth, np.nan)
+        for baked in result.meshes:
+            rows = mesh == baked.mesh
+            self.values[rows] = values_at(baked, triangle[rows], position[rows], baked.irradiance)
+        self.error = self.values - self.truth
+        # Fans of quadrilaterals: triangles 2 k and 2 k + 1 are one face, but for the walls that are bent along the cut.
+        self.face = mesh * 100 + triangle // 2
+
+    @property
+    def rms(self) -> float:
+        return float(np.sqrt((self.error**2).mean() - self.variance) / self.truth.mean())
+
+    def face_biases(self) -> dict[int, float]:
+        found = {}
+        for face in np.unique(self.face):
+            rows = self.face == face
+            if rows.sum() >= FEWEST_PROBES:
+                found[int(face)] = float(self.error[rows].mean() / self.truth[rows].mean())
+        return found
+
+
+@pytest.fixture(scope="module")
+def good(cornell_scene):
+    return Compared(cornell_scene, BakeSettings(quality="GOOD"))
+
+
+def test_the_probes_lie_on_the_box(good):
+    assert np.isfinite(good.values).all()
+    assert len(good.values) == 4000
+
+
+def test_the_error_at_good_is_at_most_eight_percent(good):
+    assert good.rms <= MOST_RMS
+
+
+def test_the_mean_of_every_face_at_good_is_within_three_percent(good):
+    biases = good.face_biases()
+    # Five walls, ten sides of blocks; the narrowest have 58 probes, whose values the bake interpolates to 5% each.
+    assert len(biases) >= 14
+    assert {face: bias for face, bias in biases.items() if abs(bias) > MOST_FACE_BIAS} == {}
+
+
+def test_the_mean_over_all_faces_at_good_is_within_a_percent(good):
+    assert abs(good.error.mean() / good.truth.mean()) < 0.01
+
+
+def test_the_estimated_error_bounds_the_true_one_and_not_by_far(good):
+    assert good.rms <= good.report["estimated_error"] <= 5 * good.rms
+
+
+def test_a_draft_is_worse_than_good_but_not_useless(good, cornell_scene):
+    draft = Compared(cornell_scene, BakeSettings(quality="DRAFT"))
+    assert good.rms < draft.rms < 0.15
