@@ -7,6 +7,8 @@ Nothing here imports bpy before `register`, so that `core` can be used and teste
 
 import atexit
 
+_state = {"registered": False}
+
 
 def register() -> None:
     """Add the settings, operators, panels and the command to Blender."""
@@ -16,12 +18,17 @@ def register() -> None:
     ui.register()
     # Blender disables add-ons when it ends; the bpy module does not, and crashes over classes still registered.
     atexit.register(unregister)
+    _state["registered"] = True
 
 
 def unregister() -> None:
     """Take everything back out, in reverse order."""
     from . import operators, ui
 
+    # At exit both the hook above and Blender come here.
+    if not _state["registered"]:
+        return
+    _state["registered"] = False
     atexit.unregister(unregister)
     ui.unregister()
     operators.unregister()

@@ -102,16 +102,21 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     rays = RayScene(surfaces.points, surfaces.triangles, settings.threads)
     lit = lit_sides(surfaces, rays, settings.seed)
 
+    walked = rays.rays
+    most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
+
     clock.start("Coarse patches", 0.02, 0.03)
     smallest = settings.minimum_size or automatic_size(surfaces, effort)
-    finest = smallest if settings.minimum_size or settings.method == "UNIFORM" else smallest / FINER_FACES
+    finest = smallest if settings.minimum_size or settings.method == "UNIFORM" else finest_size(surfaces, effort)
     tree = coarse_patches(surfaces, smallest)
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
     per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
     transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
 
     clock.start("Form factors", 0.03, 0.4)
-    rounds = subdivide(transport, lit, settings, smallest, most_rays // per_row, clock)
+    rounds = subdivide(transport, lit, settings, smallest, most_rays, clock)
+
+    rays_of_rows = rays.rays - walked
 
     clock.start("Solving", 0.4, 0.5)
     transport.lengthen_buried(clock.report)
@@ -135,10 +140,11 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
         faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
     else:
-        most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
         shown = light_up_in_detail(surfaces, lit, tree, finest, effort.tolerance, most_vertices, gather_at)
         clock.start("Cutting", 0.95, 0.98)
         faces, face, irradiance = cut_where_hidden(transport, gather_at, shown)
+
+    crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
 
     clock.start("Reconstructing", 0.98, 1.0)
     meshes, warnings = baked_meshes(scene, surfaces, faces, face, irradiance, settings.output)
@@ -148,28 +154,41 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
         "triangles": sum(len(mesh.triangles) for mesh in meshes),
         "rays": rays.rays,
-        "rays_by_kind": {"form_factors": traced, "gather": rays.rays - traced},
+        "rays_by_kind": {
+            "walks": walked,
+            "form_factors": rays_of_rows,
+            "patches": traced - walked - rays_of_rows,
+            "gather": rays.rays - traced,
+        },
         "seconds": clock.seconds,
         "seconds_in_ray_library": rays.seconds,
         "iterations": solution.iterations,
         "residual": solution.residual,
         "converged": solution.converged,
         "estimated_error": shown.error(surfaces),
-        "form_factor_standard_error": refinement.largest_standard_error(shares),
+        "form_factor_standard_error": refinement.typical_standard_error(shares, settings.threshold),
         "energy": energy(balance, solution, surfaces),
-        "minimum_size": finest,
-        "minimum_patch_size": smallest,
+        "minimum_size": smallest,
+        "minimum_face_size": finest if settings.output == "REFINED" else None,
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
         "settings": asdict(settings),
-        "warnings": [*surfaces.warnings, *warnings, *limit_warnings(rounds, solution, per_row, effort)],
+        "warnings": [*surfaces.warnings, *warnings, *limit_warnings(rounds, solution, per_row, effort, crowded)],
     }
     return BakeResult(meshes, told)
 
 
 def automatic_size(surfaces: Surfaces, effort: Effort) -> float:
-    """The minimum size n at which the baked surfaces, cut uniformly, have about `effort.patches` patches."""
-    area = float(surfaces.areas[surfaces.baked].sum())
+    """The minimum size n at which the whole scene, cut uniformly, has about `effort.patches` patches."""
+    return _size_of_patches(float(surfaces.areas.sum()), effort)
+
+
+def finest_size(surfaces: Surfaces, effort: Effort) -> float:
+    """How small faces may become where light changes fast: a fraction of the patches of what is baked."""
+    return _size_of_patches(float(surfaces.areas[surfaces.baked].sum()), effort) / FINER_FACES
+
+
+def _size_of_patches(area: float, effort: Effort) -> float:
     # A right isosceles triangle of longest edge s has the area s^2 / 4, and sizes lie between n and 2n.
     return float(np.sqrt(4.0 * area / effort.patches) / np.sqrt(2.0))
 
@@ -186,7 +205,7 @@ def subdivide(
     lit: NDArray[np.bool_],
     settings: BakeSettings,
     smallest: float,
-    most_patches: int,
+    most_rays: int,
     clock: Clock,
 ) -> refinement.Refinement:
     """Subdivide by the method asked for; every element that takes part has been traced afterwards."""
@@ -200,8 +219,8 @@ def subdivide(
 
     report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.leaves()):,} patches, {transport.rays.rays:,} rays")
     if settings.method == "ADAPTIVE":
-        return refinement.refine(transport, seeds, settings.threshold, smallest, most_patches, report)
-    return refinement.refine_uniformly(transport, seeds, smallest, most_patches, report)
+        return refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report)
+    return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report)
 
 
 def cut_where_hidden(transport: Transport, gather_at: GatherAt, shown: Lit) -> tuple[Faces, Ints, Floats]:
@@ -216,13 +235,19 @@ def cut_where_hidden(transport: Transport, gather_at: GatherAt, shown: Lit) -> t
     return cut_faces(shown.faces, shown.face, shown.places, hidden, cuts, values, before, after)
 
 
-def limit_warnings(rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort) -> list[str]:
+def limit_warnings(
+    rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort, crowded: bool
+) -> list[str]:
     """Sentences on limits that the bake ran into."""
     warnings = []
     if rounds.ended == refinement.LIMIT_MET:
         warnings.append("The memory limit ended the subdivision early; raise it or the minimum size for an even result")
     if rays_per_patch < effort.rays_per_patch:
-        warnings.append(f"The scene has so many triangles that each patch was given {rays_per_patch} rays only")
+        warnings.append(
+            f"For the memory limit or the number of triangles, each patch was given {rays_per_patch} rays only"
+        )
     if not solution.converged:
         warnings.append(f"The energy balance was solved to a residual of {solution.residual:.1e} only")
+    if crowded:
+        warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")
     return warnings

@@ -144,12 +144,10 @@ def _nodes_to_split(surfaces: Surfaces, known: Lit, tree: PatchTree, smallest: f
     missed = interpolation_error(corners, known.places.of_corner, luminance)
     square = np.bincount(faces.node[face], weights=missed**2 * area, minlength=len(tree))
     mean = float((area * luminance.mean(axis=1)).sum() / area.sum())
-    order = np.argsort(-square, kind="stable")
-    # What is left when the first k are gone.
-    left = square.sum() - np.cumsum(square[order])
-    needed = int(np.searchsorted(-left, -((tolerance * mean) ** 2) * area.sum()))
-    if square.sum() <= (tolerance * mean) ** 2 * area.sum():
-        return np.zeros(0, dtype=np.int64)
-    chosen = order[: needed + 1]
-    chosen = chosen[square[chosen] > 0.0]
-    return np.sort(chosen[tree.sizes(chosen) >= 2.0 * smallest])
+    splittable = np.flatnonzero(square)
+    splittable = splittable[tree.sizes(splittable) >= 2.0 * smallest]
+    worst_first = splittable[np.argsort(-square[splittable], kind="stable")]
+    allowed = (tolerance * mean) ** 2 * area.sum()
+    # What is left of the error that splitting could mend before the first k are gone.
+    left = square[worst_first].sum() - np.cumsum(square[worst_first]) + square[worst_first]
+    return np.sort(worst_first[left > allowed])

@@ -26,6 +26,9 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 LARGEST_EMITTER_COUNT = 4096
 """Emitters sampled one by one; the rest, weakest first, are left to the rays that happen to hit them."""
 
+NEAR = 4.0
+"""Distance, in radii of an emitter, within which its share is computed exactly."""
+
 PAIRS_PER_BATCH = 2**18
 """Receiver and emitter pairs weighed at once: some 50 MB of working arrays for each thread."""
 
@@ -128,7 +131,7 @@ def _direct_part(
     shadow_rays: int,
     seed: int,
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    share = _expected_shares(emitters, points, normals, lift)
+    share = _expected_shares(emitters, points, normals)
     lit = np.flatnonzero(share.any(axis=1))
     count = len(points)
     irradiance, penumbra = np.zeros((count, 3)), np.zeros(count, dtype=bool)
@@ -142,8 +145,10 @@ def _direct_part(
     receiver = np.repeat(np.arange(len(lit)), shadow_rays)
     square = np.mod(sequence(0, shadow_rays, 2)[None] + shift[:, None, :2], 1.0).reshape(-1, 2)
     target = _points_on(emitters.corners[flat_emitter], triangle_weights(square))
-    kernel = _kernel(points[receiver], normals[receiver], lift[receiver], target, emitters, flat_emitter)
-    ask = np.flatnonzero(kernel > 0.0)
+    kernel = _kernel(points[receiver], normals[receiver], target, emitters, flat_emitter)
+    # What a smooth shading normal sees below its face is in the form factor, and dark.
+    above = np.einsum("mx,mx->m", target - points[receiver], lift[receiver]) > 0.0
+    ask = np.flatnonzero((kernel > 0.0) & above)
     seen = np.zeros(len(kernel))
     seen[ask] = rays.visible(points[receiver[ask]], lift[receiver[ask]], target[ask])
 
@@ -164,26 +169,31 @@ def _direct_part(
     return irradiance, penumbra
 
 
-def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, lift: Floats) -> Floats:
-    """Each emitter's share of the unoccluded direct light of each point, roughly, (n, k); 0 where it sends none."""
-    centre = emitters.corners.mean(axis=1)
-    toward = centre[None] - points[:, None]
-    square = np.einsum("nkx,nkx->nk", toward, toward)
-    distance = np.sqrt(square) + 1e-300
-    # The highest corner decides, so that an emitter which only peeks over the horizon is not forgotten.
-    heights = [emitters.corners[:, k] @ normals.T - np.einsum("nx,nx->n", points, normals) for k in range(3)]
-    height = np.max(heights, axis=0).T
-    facing = -np.einsum("nkx,kx->nk", toward, emitters.normals)
+def _expected_shares(emitters: Emitters, points: Floats, normals: Floats) -> Floats:
+    """Each emitter's share of the unoccluded direct light of each point, (n, k); 0 where it surely sends none.
+
+    Far emitters are taken as points at their centres, near ones by their exact form factor: a wall that glows beside
+    the point may be most of what it sees, and its centre seen edge on.
+    """
+    origin = emitters.corners.mean(axis=(0, 1))
+    centre, at = emitters.corners.mean(axis=1) - origin, points - origin
+    radius = np.linalg.norm(emitters.corners - origin - centre[:, None], axis=2).max(axis=1)
+    square = (at**2).sum(axis=1)[:, None] + (centre**2).sum(axis=1) - 2.0 * (at @ centre.T)
+    square = np.maximum(square, np.finfo(np.float64).tiny)
+    distance = np.sqrt(square)
+    # The highest point of the emitter decides, so that one which only peeks over the horizon is not forgotten.
+    height = normals @ centre.T - (normals * at).sum(axis=1)[:, None] + radius
+    facing = at @ emitters.normals.T - (centre * emitters.normals).sum(axis=1)
     facing = np.where(emitters.one_sided, facing, np.abs(facing))
-    above = np.max([emitters.corners[:, k] @ lift.T - np.einsum("nx,nx->n", points, lift) for k in range(3)], axis=0).T
-    cosines = np.clip(height, 0.0, distance) * np.maximum(facing, 0.0) / (distance * distance)
-    # The area in the denominator bounds the estimate near the emitter; a floor keeps a share for its near half when
-    # its centre is seen edge on.
-    value = (cosines + 0.01 * (cosines > 0.0)) * emitters.areas / (square + emitters.areas)
-    value = np.where((height > 0.0) & (above > 0.0) & (facing > 0.0), value, 0.0) * (emitters.radiance @ LUMINANCE)
+    possible = (height > 0.0) & (facing > 0.0)
+    value = np.clip(height / distance, 0.0, 1.0) * facing / distance * emitters.areas / (square + emitters.areas)
+    value[~possible] = 0.0
+    row, near = np.nonzero(possible & (square < NEAR * NEAR * radius * radius))
+    value[row, near] = np.pi * point_to_triangle(points[row], normals[row], emitters.corners[near])
+    value *= emitters.radiance @ LUMINANCE
     total = value.sum(axis=1, keepdims=True)
-    result: Floats = np.divide(value, total, out=np.zeros_like(value), where=total > 0.0)
-    return result
+    share: Floats = np.divide(value, total, out=np.zeros_like(value), where=total > 0.0)
+    return share
 
 
 def _systematic_draw(share: Floats, draws: int, offset: Floats) -> Ints:
@@ -207,14 +217,12 @@ def _points_on(corners: Floats, weights: Floats) -> Floats:
     return corners[:, 0] * (1.0 - u - v) + corners[:, 1] * u + corners[:, 2] * v
 
 
-def _kernel(
-    points: Floats, normals: Floats, lift: Floats, target: Floats, emitters: Emitters, chosen: Ints
-) -> NDArray[np.float64]:
+def _kernel(points: Floats, normals: Floats, target: Floats, emitters: Emitters, chosen: Ints) -> NDArray[np.float64]:
     """cos cos / r^2 between receivers and points on emitters, 0 below a horizon, (m,)."""
     toward = target - points
     square = np.einsum("mx,mx->m", toward, toward)
     cosine = np.maximum(np.einsum("mx,mx->m", toward, normals), 0.0)
     facing = -np.einsum("mx,mx->m", toward, emitters.normals[chosen])
     facing = np.where(emitters.one_sided[chosen], np.maximum(facing, 0.0), np.abs(facing))
-    value = cosine * facing / np.maximum(square * square, np.finfo(np.float64).tiny)
-    return np.where(np.einsum("mx,mx->m", toward, lift) > 0.0, value, 0.0)
+    value: Floats = cosine * facing / np.maximum(square * square, np.finfo(np.float64).tiny)
+    return value

@@ -87,7 +87,6 @@ def relative_error(
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     weight = area * counted / (area * counted).sum()
     missed = interpolation_error(corners, of_corner, luminance)
-    # Noise is independent from vertex to vertex; a linear mix of three keeps half of its variance on average.
     square = missed**2 + (noise[of_corner] ** 2).mean(axis=1) / 2.0
     mean = float((weight * luminance.mean(axis=1)).sum())
     return float(SAFETY * np.sqrt((weight * square).sum()) / mean) if mean > 0.0 else 0.0

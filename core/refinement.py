@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .scene import Floats, Ints
+from .scene import Ints
 from .transport import ESCAPED, Shares, Transport
 
 MOST_APPEALS = 1
@@ -81,7 +81,7 @@ def refine(
     seeds: Seeds,
     threshold: float,
     smallest: float,
-    most_leaves: int,
+    most_rays: int,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refinement:
     """Split fragments by the form factors to them until all are small or weakly coupled.
@@ -93,15 +93,15 @@ def refine(
     ----------
     smallest : float
         The minimum size n, scene units.
-    most_leaves : int
-        Leaves that memory allows.
+    most_rays : int
+        Rays that memory allows.
     """
     tree, rounds = transport.tree, []
     while True:
         fragments, rays_before = len(tree.leaves()), transport.rays.rays
         rows = trace_all(transport, seeds, report)
         flagged, largest, more = _flagged(transport, seeds, threshold, smallest, report)
-        full = fragments + 3 * len(flagged) > most_leaves
+        full = transport.kept_rays() + 4 * len(flagged) * transport.rays_per_row > most_rays
         if full:
             flagged = flagged[:0]
         moved = 0
@@ -120,7 +120,7 @@ def refine_uniformly(
     transport: Transport,
     seeds: Seeds,
     smallest: float,
-    most_leaves: int,
+    most_rays: int,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refinement:
     """Split every leaf of size m = 2n or more, down to the minimum size n, then trace."""
@@ -130,11 +130,12 @@ def refine_uniformly(
         large = leaves[tree.sizes(leaves) >= 2.0 * smallest]
         if len(large) == 0:
             break
-        if len(leaves) + 3 * len(large) > most_leaves:
+        if (len(leaves) + 3 * len(large)) * transport.rays_per_row > most_rays:
             ended = LIMIT_MET
             break
         rounds.append(Round(len(leaves), 0, 0, len(large), 0, 0.0))
         tree.split(large)
+    transport.follow_splits()
     before = transport.rays.rays
     rows = trace_all(transport, seeds, report)
     rounds.append(Round(len(tree.leaves()), rows, transport.rays.rays - before, 0, 0, 0.0))
@@ -186,7 +187,7 @@ def _why_ended(transport: Transport, threshold: float) -> str:
     return SIZE_MET if above.any() else THRESHOLD_MET
 
 
-def largest_standard_error(shares: Shares) -> float:
-    """The largest standard error of any form factor."""
-    values: Floats = shares.standard_error()
-    return float(values.max(initial=0.0))
+def typical_standard_error(shares: Shares, threshold: float) -> float:
+    """Standard error of a form factor as large as the threshold, for the median element."""
+    rays = float(np.median(shares.rays)) if len(shares.rays) else 1.0
+    return float(np.sqrt(threshold * (1.0 - threshold) / rays))

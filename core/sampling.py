@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from .scene import Floats, Ints
 
 PATTERNS = 64
-"""Patterns that receivers share; turned about their normals, no two receivers have the same rays."""
+"""Patterns that patches share; turned about their normals, no two patches have the same rays. Vertices, which the eye
+compares, all take the first one."""
 
 Singles = NDArray[np.float32]
 

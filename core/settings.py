@@ -24,8 +24,10 @@ class BakeSettings:
         A fragment is split while it receives more than this share of the energy that leaves some other fragment
         (Kulyasov & Nikulin 2010, step 4); 0 < threshold <= 1.
     minimum_size : float
-        Length n in scene units that the edges of fragments never fall below by splitting: only fragments of size
-        m = 2n or more are split. 0 chooses it from the scene's size and the quality.
+        Length n in scene units: only fragments whose longest edge is m = 2n or more are split, so that no split makes
+        a longest edge shorter than n. Faces are cut further only to fit together, and where another object hides part
+        of them. 0 chooses it from the scene's size and the quality, and lets faces (not patches) become finer where
+        light changes fast.
     method : str
         `'ADAPTIVE'` splits by form factors; `'UNIFORM'` splits everything down to the minimum size.
     quality : str
@@ -37,7 +39,8 @@ class BakeSettings:
     threads : int
         Threads that trace rays; 0 takes every core. The result does not depend on it.
     memory_limit : int
-        Bytes that the traced rays and working arrays may take, in MiB.
+        What the traced rays and the working arrays made of them may take, in MiB; a small one gives fewer patches and
+        rays, and a warning.
     """
 
     threshold: float = 0.02

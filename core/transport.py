@@ -220,6 +220,10 @@ class Transport:
         """Rows traced and kept."""
         return sum(len(table.element) for table in self.tables)
 
+    def kept_rays(self) -> int:
+        """Rays that are kept in memory."""
+        return sum(table.hits.size for table in self.tables)
+
     def has_row(self) -> NDArray[np.bool_]:
         """Whether each element has been traced, (2 * nodes,)."""
         known = np.zeros(2 * len(self.tree), dtype=bool)

@@ -105,7 +105,9 @@ def _parser() -> argparse.ArgumentParser:
     what.add_argument("--bake-to", choices=OUTPUTS, help="new refined meshes, or the meshes as they are")
     how = parser.add_argument_group("how it is baked")
     how.add_argument("--threshold", type=float, help="share of another surface's light above which one is split")
-    how.add_argument("--minimum-size", type=float, metavar="LENGTH", help="no edges shorter than this; 0: automatic")
+    how.add_argument(
+        "--minimum-size", type=float, metavar="LENGTH", help="no piece is split to less than this; 0: automatic"
+    )
     how.add_argument("--method", choices=METHODS, help="split where the light changes, or everywhere")
     how.add_argument("--quality", choices=QUALITIES, help="how many rays are traced")
     how.add_argument("--seed", type=int, help="pattern of the remaining noise")

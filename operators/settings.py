@@ -18,7 +18,7 @@ METHOD_ITEMS = (
     ),
 )
 QUALITY_ITEMS = (
-    ("DRAFT", "Draft", "Seconds: enough to judge the light while you move lamps and change colours"),
+    ("DRAFT", "Draft", "Seconds: enough to judge the light while you move things and change colours"),
     ("GOOD", "Good", "Smooth shadows without visible noise: right for most scenes"),
     ("HIGH", "High", "The cleanest shadows and corners, for the final bake; takes several times as long as Good"),
 )
@@ -59,7 +59,7 @@ class RadiositySettings(bpy.types.PropertyGroup):
     minimum_size: bpy.props.FloatProperty(
         name="Minimum Size",
         description=(
-            "Surfaces are not split into edges shorter than this. Halve it to sharpen shadows. "
+            "Surfaces are split only while their pieces stay longer than this. Halve it to sharpen shadows. "
             "0 chooses it from the size of the scene and the quality"
         ),
         subtype="DISTANCE",
@@ -108,7 +108,9 @@ class RadiositySettings(bpy.types.PropertyGroup):
     )
     memory_limit: bpy.props.IntProperty(
         name="Memory Limit (MiB)",
-        description="Memory that the bake may use for its rays, in MiB. A small limit is slower, never less accurate",
+        description=(
+            "Memory that the bake may use for its rays, in MiB. A small limit means fewer patches and rays, and a warning"
+        ),
         default=DEFAULTS.memory_limit,
         min=64,
         soft_max=65536,

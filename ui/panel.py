@@ -104,7 +104,7 @@ def _rows(report: dict) -> list[tuple[str, str]]:
         if key in report
     ]
     if report.get("minimum_size"):
-        rows.append(("Shortest Edge", f"{report['minimum_size']:.3g}"))
+        rows.append(("Minimum Size", f"{report['minimum_size']:.3g}"))
     rows.append(("Time", f"{report['seconds']['total']:.1f} s"))
     if report.get("estimated_error") is not None:
         rows.append(("Estimated Error", f"{report['estimated_error']:.1%}"))
