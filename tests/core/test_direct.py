@@ -168,7 +168,7 @@ def test_thousands_of_tiny_emitters_give_the_light_of_one_as_large():
     points = spread(300)
     found, _ = direct([FLOOR, lamp], points, rays=16)
     truth = exact.rectangle_seen_from_below(points, (0.1, -0.2, 1.0), 0.5, 0.3) * 3.0
-    # 16 rays stand for 4,050 emitters: each is drawn nearly in proportion to what it sends, so little is left to chance.
+    # 16 rays stand for 4,050 emitters, drawn nearly in proportion to what each sends: little is left to chance.
     np.testing.assert_allclose(found[:, 0], truth, rtol=0.05)
     assert found[:, 0].mean() == pytest.approx(truth.mean(), rel=2e-3)
 
