@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import refinement
 from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance
 from .clock import Clock
-from .cutting import cut_faces, cut_receivers, find_cuts
+from .cutting import IsHidden, cut_faces, cut_receivers, find_cuts
 from .detail import GatherAt, Lit, light_up, light_up_in_detail
 from .direct import strongest_emitters
 from .errors import NoLightError
@@ -136,13 +136,16 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     def gather_at(places: Receivers) -> Gathered:
         return gather(transport, radiance, emitters, places, effort.gather, gathering)
 
+    def is_hidden(places: Receivers) -> NDArray[np.bool_]:
+        return hidden_receivers(transport, places, RAYS_TO_FIND_CUTS)
+
     if settings.output == "ORIGINAL":
         shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
         faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
     else:
-        shown = light_up_in_detail(surfaces, lit, tree, finest, effort.tolerance, most_vertices, gather_at)
+        shown = light_up_in_detail(surfaces, lit, tree, finest, effort.tolerance, most_vertices, gather_at, is_hidden)
         clock.start("Cutting", 0.95, 0.98)
-        faces, face, irradiance = cut_where_hidden(transport, gather_at, shown)
+        faces, face, irradiance = cut_where_hidden(gather_at, is_hidden, shown)
 
     crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
 
@@ -223,12 +226,10 @@ def subdivide(
     return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report)
 
 
-def cut_where_hidden(transport: Transport, gather_at: GatherAt, shown: Lit) -> tuple[Faces, Ints, Floats]:
+def cut_where_hidden(gather_at: GatherAt, is_hidden: IsHidden, shown: Lit) -> tuple[Faces, Ints, Floats]:
     """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
     count, hidden = len(shown.faces.triangle), shown.gathered.hidden
-    cuts = find_cuts(
-        shown.faces, shown.places, hidden, lambda where: hidden_receivers(transport, where, RAYS_TO_FIND_CUTS)
-    )
+    cuts = find_cuts(shown.faces, shown.places, hidden, is_hidden)
     before, after = (gather_at(where).irradiance for where in cut_receivers(shown.faces, shown.places, cuts))
     fronts = shown.gathered.irradiance[shown.places.of_corner[:count]]
     values = np.concatenate([fronts, shown.corner_irradiance()[count:]])

@@ -27,6 +27,10 @@ BISECTIONS = 10
 MARGIN = 0.004
 """Share of the edge that receivers keep from the cut, on both sides: a few times what the bisection leaves open."""
 
+PLACES_ALONG_CUT = (0.15, 0.5, 0.85)
+DISTANCE_FROM_CUT = 0.08
+"""Where a cut is checked: shares of its length, and the distance from it as a share of the face's width."""
+
 LEAST_PIECE = 0.02
 """Share of the edge that a cut keeps from its ends, so that no sliver is left."""
 
@@ -90,6 +94,68 @@ def find_cuts(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], is_hid
         low, high = np.where(inside, low, middle), np.where(inside, middle, high)
     share = np.clip((low + high) / 2.0, LEAST_PIECE, 1.0 - LEAST_PIECE)
     return CutEdges(start, end, seen, unseen, share)
+
+
+def crooked_faces(
+    faces: Faces, places: Receivers, hidden: NDArray[np.bool_], cuts: CutEdges, is_hidden: IsHidden
+) -> Ints:
+    """Faces that a straight cut does not fit, such as those with the corner of a block on them; indices of faces.
+
+    Beside the line between a face's two cuts, the hidden side is asked whether it is hidden, and the seen one whether
+    it is seen.
+    """
+    count = len(faces.triangle)
+    of_corner = places.of_corner[:count]
+    own = _own_cuts(of_corner, cuts, np.ones((count, 3), dtype=bool))
+    face = np.flatnonzero((own >= 0).sum(axis=1) == 2)
+    if len(face) == 0:
+        return face
+    corners, unseen = of_corner[face], hidden[of_corner[face]]
+    # Barycentric coordinates of the two cuts, and the way from the middle of the seen corners to that of the hidden.
+    two = np.argsort(own[face] < 0, axis=1, kind="stable")[:, :2]
+    ends = [_cut_weights(faces, face, two[:, k], own, cuts) for k in (0, 1)]
+    across = unseen / unseen.sum(axis=1)[:, None] - ~unseen / (~unseen).sum(axis=1)[:, None]
+    tests, expected, member = [], [], []
+    for along in PLACES_ALONG_CUT:
+        on_cut = ends[0] * (1.0 - along) + ends[1] * along
+        for step in (-DISTANCE_FROM_CUT, DISTANCE_FROM_CUT):
+            weights = on_cut + step * across
+            inside = np.flatnonzero((weights > 0.0).all(axis=1))
+            tests.append(weights[inside])
+            expected.append(np.full(len(inside), step > 0.0))
+            member.append(inside)
+    weights, at = np.concatenate(tests), np.concatenate(member)
+    wrong = is_hidden(_within(faces, face[at], places, corners[at], weights)) != np.concatenate(expected)
+    return np.unique(face[at[wrong]])
+
+
+def _cut_weights(faces: Faces, face: Ints, edge: Ints, own: Ints, cuts: CutEdges) -> Floats:
+    """Barycentric coordinates, in each face, of the cut on one of its edges, (f, 3)."""
+    row, following = np.arange(len(face)), (edge + 1) % 3
+    cut = own[face, edge]
+    forward = faces.places[faces.corners[face, edge]] == faces.places[cuts.start[cut]]
+    share = np.where(forward, cuts.share[cut], 1.0 - cuts.share[cut])
+    weights = np.zeros((len(face), 3))
+    weights[row, edge], weights[row, following] = 1.0 - share, share
+    return weights
+
+
+def _within(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights: Floats) -> Receivers:
+    """Receivers inside faces, at barycentric coordinates (m, 3)."""
+
+    def mixed(values: Floats) -> Floats:
+        result: Floats = np.einsum("mk,mkx->mx", weights, values[corners])
+        return result
+
+    return Receivers(
+        points=np.einsum("mk,mkx->mx", weights, faces.points[faces.corners[face]]),
+        normals=normalized(mixed(places.normals)),
+        lift=normalized(mixed(places.lift)),
+        codes=places.codes[corners[:, 0]],
+        inward=np.zeros((len(face), 3)),
+        sizes=places.sizes[corners].mean(axis=1),
+        of_corner=np.zeros((0, 3), dtype=np.int64),
+    )
 
 
 def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Receivers, Receivers]:

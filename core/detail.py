@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .cutting import IsHidden, crooked_faces, find_cuts
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error, relative_error
 from .gather import Gathered, corner_values
@@ -84,6 +85,7 @@ def light_up_in_detail(
     tolerance: float,
     most_vertices: int,
     gather_at: GatherAt,
+    is_hidden: IsHidden,
 ) -> Lit:
     """Gather light at the corners of a conforming mesh, and split its faces until the estimated error is small.
 
@@ -98,6 +100,8 @@ def light_up_in_detail(
         RMS error over the surface to be reached, relative to the mean.
     most_vertices : int
         Receivers after which no face is split any more.
+    is_hidden : callable
+        Tells whether receivers are hidden: faces that another object hides in part are split where it has a corner.
     """
     tree = tree.copy()
     known = light_up(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at)
@@ -107,7 +111,21 @@ def light_up_in_detail(
             break
         tree.split(nodes)
         known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
+    for _ in range(MOST_ROUNDS):
+        nodes = _nodes_with_crooked_cuts(known, tree, smallest, is_hidden)
+        if len(nodes) == 0 or len(known.places.points) > most_vertices:
+            break
+        tree.split(nodes)
+        known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
     return known
+
+
+def _nodes_with_crooked_cuts(known: Lit, tree: PatchTree, smallest: float, is_hidden: IsHidden) -> Ints:
+    """Leaves that can be split and whose faces a straight cut does not fit."""
+    hidden = known.gathered.hidden
+    cuts = find_cuts(known.faces, known.places, hidden, is_hidden)
+    nodes = np.unique(known.faces.node[crooked_faces(known.faces, known.places, hidden, cuts, is_hidden)])
+    return nodes[tree.sizes(nodes) >= 2.0 * smallest]
 
 
 def _wanted_sides(faces: Faces, surfaces: Surfaces, lit_sides: NDArray[np.bool_]) -> tuple[Ints, Ints]:
