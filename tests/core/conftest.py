@@ -37,3 +37,8 @@ def room_draft(room_scene: Scene) -> BakeResult:
 @pytest.fixture(scope="session")
 def room_original(room_scene: Scene) -> BakeResult:
     return bake(room_scene, BakeSettings(quality="DRAFT", minimum_size=0.15, output="ORIGINAL"))
+
+
+@pytest.fixture(scope="session")
+def room_good(room_scene: Scene) -> BakeResult:
+    return bake(room_scene, BakeSettings(quality="GOOD", minimum_size=0.15))

@@ -1,0 +1,160 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces cut where an object stands on them: the foot of a black block under a white sky, whose light is known exactly.
+
+A point of the black floor outside of the block receives the world's radiance less the block's form factor; the floor
+under the block receives nothing.
+"""
+
+import numpy as np
+import pytest
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.cutting import BISECTIONS, LEAST_PIECE
+from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.settings import BakeSettings
+
+from tests.core.building import areas, block, crosses, t_junctions
+from tests.scenes import exact, oracle
+
+N = 0.08
+LOW, HIGH, TURNED = (-0.37, -0.23), (0.31, 0.36), 27.0
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def in_block(points):
+    """Coordinates along the block's sides from its middle, and half its extents."""
+    low, high = np.array(LOW), np.array(HIGH)
+    angle = np.radians(TURNED)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return (points[..., :2] - (low + high) / 2) @ turn, (high - low) / 2
+
+
+def distance_to_foot(points):
+    """Signed distance to the foot's outline, negative inside."""
+    at, half = in_block(points)
+    beyond = np.abs(at) - half
+    return np.where((beyond > 0).any(axis=-1), np.linalg.norm(np.maximum(beyond, 0), axis=-1), beyond.max(axis=-1))
+
+
+def distance_to_corner(points):
+    """Distance to the nearest corner of the foot."""
+    at, half = in_block(points)
+    return np.linalg.norm(np.abs(at) - half, axis=-1)
+
+
+def truth(points, solid):
+    """Irradiance over pi of the floor outside the block, under a world of radiance 1."""
+    sides = solid.vertices[solid.triangles]
+    return np.array([1.0 - sum(oracle.point_to_polygon(p, UP, t) for t in sides) for p in points])
+
+
+class Foot:
+    def __init__(self, bottom: bool):
+        self.solid = block("block", (*LOW, 0.0), (*HIGH, 0.5), reflectance=0.0, turned=TURNED, bottom=bottom)
+        floor = exact.rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), reflectance=0.0)
+        settings = BakeSettings(quality="DRAFT", minimum_size=N, method="UNIFORM")
+        self.result = bake(Scene((floor, self.solid), np.ones(3)), settings)
+        self.floor = self.result.meshes[0]
+        self.corners = self.floor.vertices[self.floor.triangles]
+        # Midpoints of midpoints are whole numbers of 1/256 of the floor's triangles; what a cut adds is not.
+        dyadic = self.floor.barycentric * 2.0**8
+        self.is_cut = (dyadic != np.rint(dyadic)).any(axis=2)
+
+
+@pytest.fixture(scope="module", params=[True, False], ids=["with a bottom", "without a bottom"])
+def foot(request):
+    return Foot(request.param)
+
+
+def test_the_cut_follows_the_foot(foot):
+    position = foot.corners[foot.is_cut]
+    assert len(position) > 50
+    # An edge is at most 2 n long and the bisection leaves a thousandth of it open; a cut keeps LEAST_PIECE of an edge
+    # from its ends, so that the few that come closer are moved by up to that.
+    off = np.abs(distance_to_foot(position))
+    assert np.percentile(off, 90) <= 2 * N * 2.0**-BISECTIONS
+    assert off.max() <= 2 * N * LEAST_PIECE
+
+
+def test_the_cut_is_unbiased(foot):
+    position = foot.corners[foot.is_cut]
+    assert abs(distance_to_foot(position).mean()) <= 2 * N * 2.0**-BISECTIONS
+
+
+def test_no_face_crosses_the_foot_away_from_its_corners(foot):
+    middle = foot.corners.mean(axis=1)
+    straight = distance_to_corner(middle) > 2 * N
+    signed = distance_to_foot(foot.corners)
+    slack = 2 * N * LEAST_PIECE
+    crossing = (signed.min(axis=1) < -slack) & (signed.max(axis=1) > slack) & straight
+    assert not crossing.any()
+
+
+def test_cut_faces_fit_together(foot):
+    assert t_junctions(foot.floor.vertices, foot.floor.triangles) == 0
+
+
+def test_cutting_neither_loses_nor_turns_the_floor(foot):
+    normal = crosses(foot.floor.vertices, foot.floor.triangles)
+    assert (normal[:, 2] > 0).all()
+    assert areas(foot.corners).sum() == pytest.approx(4.0, rel=1e-9)
+
+
+def test_the_floor_under_the_block_is_dark(foot):
+    middle = foot.corners.mean(axis=1)
+    signed = distance_to_foot(foot.corners)
+    under = (signed.max(axis=1) < 0.05 * N) & (signed.min(axis=1) < -0.1 * N) & (distance_to_corner(middle) > N)
+    assert under.sum() > 100
+    assert foot.floor.irradiance[under].max() == 0.0
+
+
+def test_the_light_does_not_fade_towards_the_foot(foot):
+    # At a cut, faces outside must show the light just outside of the block, not a mean with the dark; it is compared a
+    # twentieth of the way into the face. 64 even rays know a half of the sky to within 0.02.
+    middle = foot.corners.mean(axis=1)
+    outside = (distance_to_foot(middle) > 0) & (distance_to_corner(middle) > N)
+    at_cut = foot.is_cut & outside[:, None]
+    value = foot.floor.irradiance[at_cut][:, 0]
+    inward = foot.corners + 0.05 * (middle[:, None] - foot.corners)
+    assert len(value) > 100
+    error = value - truth(inward[at_cut], foot.solid)
+    assert np.abs(error).max() < 0.08
+    assert abs(error.mean()) < 0.01
+
+
+def test_the_floor_outside_has_the_exact_light(foot):
+    signed = distance_to_foot(foot.corners)
+    outside = signed > 0.2 * N
+    unique, first = np.unique(foot.corners[outside], axis=0, return_index=True)
+    error = foot.floor.irradiance[outside][first][:, 0] - truth(unique, foot.solid)
+    assert np.sqrt((error**2).mean()) < 0.04
+    assert abs(error.mean()) < 0.01
+
+
+def test_no_new_vertex_makes_a_sliver_along_an_edge(foot):
+    edges = np.linalg.norm(np.roll(foot.corners, -1, axis=1) - foot.corners, axis=2)
+    assert edges.min() > 0.01 * N / 4
+
+
+def test_a_block_in_the_air_cuts_nothing():
+    floor = exact.rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), reflectance=0.0)
+    solid = block("block", (*LOW, 0.2), (*HIGH, 0.5), reflectance=0.0, turned=TURNED)
+    result = bake(Scene((floor, solid), np.ones(3)), BakeSettings(quality="DRAFT", minimum_size=0.3, method="UNIFORM"))
+    dyadic = result.meshes[0].barycentric * 2.0**8
+    assert (dyadic == np.rint(dyadic)).all()
+    assert result.meshes[0].irradiance.min() > 0
+
+
+def test_a_patch_that_two_blocks_share_is_cut_by_both():
+    floor = exact.rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), reflectance=0.0)
+    solids = [
+        block(f"block {x}", (x - 0.15, -0.5, 0), (x + 0.15, 0.5, 0.4), reflectance=0.0, turned=t)
+        for x, t in ((-0.3, 8), (0.3, -11))
+    ]
+    settings = BakeSettings(quality="DRAFT", minimum_size=0.1, method="UNIFORM")
+    mesh = bake(Scene((floor, *solids), np.ones(3)), settings).meshes[0]
+    assert t_junctions(mesh.vertices, mesh.triangles) == 0
+    corners = mesh.vertices[mesh.triangles]
+    dark = (mesh.irradiance[..., 0] == 0).all(axis=1)
+    # What is dark has the area of the two feet, but for their corners, which a cut through a triangle rounds off.
+    assert areas(corners)[dark].sum() == pytest.approx(2 * 0.3 * 1.0, rel=0.05)
