@@ -89,7 +89,7 @@ def room_with_block(reflectance: float = 0.5, **options: object) -> Scene:
 def cornell_box() -> Scene:
     """Return the Cornell box with its lamp set into the ceiling, polygons cut into fans."""
     meshes = []
-    for s in rooms.cornell_box_set_in():
+    for s in rooms.cornell_box():
         triangles = [(f[0], f[k], f[k + 1]) for f in s.faces for k in range(1, len(f) - 1)]
         meshes.append(surface_mesh(s.name, s.vertices, triangles, reflectance=s.reflectance, emission=s.emission))
     return Scene(tuple(meshes), DARK)

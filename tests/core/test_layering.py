@@ -46,7 +46,7 @@ def test_core_imports_nothing_of_the_package_above_it():
 
 
 def run(code: str) -> subprocess.CompletedProcess:
-    prelude = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from tests.conftest import load_package; "
+    prelude = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from tools.package import load_package; "
     return subprocess.run([sys.executable, "-c", prelude + code], capture_output=True, text=True, timeout=120)
 
 

@@ -19,7 +19,7 @@ SAMPLES = 16384
 def main() -> None:
     """Compute and write."""
     sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
-    from bench.package import load_package
+    from tools.package import load_package
 
     load_package()
     from bench.probes import area_uniform_probes
