@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How well and how fast we bake: scenes, a converged reference, probes, and the peers. Nothing here is shipped."""
 
-from .package import load_package
+from tools.package import load_package
 
 load_package()

@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from .package import ROOT
+from tools.package import ROOT
 
 OUT = ROOT / "out"
 PACKAGES = ("numpy", "embreex", "mitsuba", "drjit", "bpy", "pyradiance")

@@ -23,10 +23,11 @@ from radiosity_bake.core.result import BakedMesh, BakeResult
 from radiosity_bake.core.scene import Floats, Ints, Scene
 from radiosity_bake.core.settings import BakeSettings
 
+from tools.package import ROOT
+
 from . import reference
 from .accuracy import irradiance_at_probes
 from .measure import Judged
-from .package import ROOT
 
 BOUNCES = 64
 

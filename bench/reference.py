@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from radiosity_bake.core.scene import Floats, Scene, SurfaceMesh
 
-from .package import ROOT
+from tools.package import ROOT
 
 CACHE = ROOT / ".cache" / "reference"
 

@@ -160,26 +160,12 @@ def cornell_box() -> Scene:
     times brighter than anything that is seen: that would be the mean, and the error, of the whole box. What hangs like
     that is `cornell_box_hung`.
     """
-    meshes = {mesh.name: mesh for mesh in cornell_box_hung().meshes}
-    ceiling, lamp = meshes["Ceiling"], meshes["Lamp"]
-    height = ceiling.vertices[:, 2].mean()
-    level = lamp.vertices * [1.0, 1.0, 0.0] + [0.0, 0.0, height]
-    outer, inner = ceiling.vertices, level
-    nearest = [int(np.linalg.norm(inner - corner, axis=1).argmin()) + 4 for corner in outer]
-    ring = [(k, (k + 1) % 4) for k in range(4)]
-    triangles = [t for a, b in ring for t in ((a, b, nearest[b]), (a, nearest[b], nearest[a]))]
-    meshes["Ceiling"] = surface_mesh(
-        "Ceiling", np.concatenate([outer, inner]), triangles, reflectance=ceiling.reflectance[0]
-    )
-    meshes["Lamp"] = surface_mesh(
-        "Lamp", level, lamp.triangles, reflectance=lamp.reflectance[0], emission=lamp.emission[0]
-    )
-    return Scene(tuple(meshes.values()), DARKNESS)
+    return scene_of(rooms.cornell_box())
 
 
 def cornell_box_hung() -> Scene:
-    """The Cornell box as the demo has it: the lamp hangs 0.1 mm under the ceiling and lights it from there."""
-    return scene_of(rooms.cornell_box())
+    """The same with an unbroken ceiling: the lamp hangs 0.1 mm under it and lights it from there."""
+    return scene_of(rooms.cornell_box_hung())
 
 
 def paper_scene_1() -> Scene:

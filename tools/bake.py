@@ -7,23 +7,13 @@ python tools/bake.py room.blend --quality GOOD --output room_baked.blend
 takes the options of `blender --command radiosity_bake`; `--help` lists them.
 """
 
-import importlib.util
 import sys
 from pathlib import Path
 
-PACKAGE = "radiosity_bake"
+# A script finds what lies beside it, not the checkout that it belongs to.
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-
-def load_package():
-    """Return the extension of this checkout, imported under the name of its id."""
-    if PACKAGE in sys.modules:
-        return sys.modules[PACKAGE]
-    root = Path(__file__).resolve().parent.parent
-    spec = importlib.util.spec_from_file_location(PACKAGE, root / "__init__.py", submodule_search_locations=[str(root)])
-    package = importlib.util.module_from_spec(spec)
-    sys.modules[PACKAGE] = package
-    spec.loader.exec_module(package)
-    return package
+from tools.package import PACKAGE, load_package
 
 
 def run(arguments: list[str]) -> int:

@@ -75,13 +75,11 @@ def _cornell_surface(name: str, material: str, quads: str, reflectance: Colour, 
     return Surface(name, material, tuple(index_of), faces, reflectance, emission)
 
 
-def cornell_box() -> list[Surface]:
-    """Return the Cornell box with its measured coordinates, its lamp 0.1 mm below the ceiling that it is published in.
+def cornell_box_hung() -> list[Surface]:
+    """Return the Cornell box with its lamp hung 0.1 mm below an unbroken ceiling: a hard test, and a bad picture.
 
-    The numbers are those that the Cornell University Program of Computer Graphics publishes as "Cornell Box Data". The
-    walls are as slightly askew as the real ones, and the blocks have no bottom. Hanging the lamp keeps the ceiling
-    whole, as is common where lamps glow on one side only. Blender's glow on both: here the strip of ceiling behind the
-    lamp is by far the brightest thing in the room. It makes a hard test, and a bad picture.
+    Many renderers ship it so, with a lamp that glows on one side only. Blender's glow on both: here the strip of
+    ceiling behind the lamp is by far the brightest thing in the room.
     """
     return [
         _cornell_surface("Floor", "White", "552.8 0 0 \n 0 0 0 \n 0 0 559.2 \n 549.6 0 559.2", CORNELL_WHITE),
@@ -155,9 +153,13 @@ def cornell_box() -> list[Surface]:
     ]
 
 
-def cornell_box_set_in() -> list[Surface]:
-    """Return the Cornell box with its lamp where it is published: in the plane of the ceiling, in a hole of it."""
-    surfaces = {surface.name: surface for surface in cornell_box()}
+def cornell_box() -> list[Surface]:
+    """Return the Cornell box with its measured coordinates: its lamp is in the plane of the ceiling, in a hole of it.
+
+    The numbers are those that the Cornell University Program of Computer Graphics publishes as "Cornell Box Data". The
+    walls are as slightly askew as the real ones, and the blocks have no bottom.
+    """
+    surfaces = {surface.name: surface for surface in cornell_box_hung()}
     ceiling, lamp = surfaces["Ceiling"], surfaces["Lamp"]
     height = ceiling.vertices[0][2]
     rim = tuple((x, y, height) for x, y, _ in lamp.vertices)
@@ -230,7 +232,7 @@ def paper_scene_1() -> list[Surface]:
     ]
 
 
-ROOMS: dict[str, Callable[[], list[Surface]]] = {"cornell_box": cornell_box_set_in, "paper_scene_1": paper_scene_1}
+ROOMS: dict[str, Callable[[], list[Surface]]] = {"cornell_box": cornell_box, "paper_scene_1": paper_scene_1}
 
 CAMERAS: dict[str, Camera] = {
     # Published: at (278, 273, -800) mm, looking along z, focal length 35 mm, film 25 mm.
