@@ -267,12 +267,6 @@ def test_longer_rows_leave_fewer_fragments_in_doubt():
     assert doubtful[0] > doubtful[1] > doubtful[2] > 0
 
 
-def test_the_reported_standard_error_is_the_largest_of_all(room):
-    transport, _ = room
-    shares = transport.shares()
-    assert refinement.largest_standard_error(shares) == shares.standard_error().max()
-
-
 def test_the_report_holds_plain_numbers(room):
     _, rounds = room
     for entry in rounds.as_report():
