@@ -133,7 +133,7 @@ def _direct_at(
         at, axis = points[first:last].reshape(-1, 3), normals[first:last].reshape(-1, 3)
         keys = (elements[first:last, None] * count + np.arange(count)).ravel()
         light, _ = direct_irradiance(
-            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52
+            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, count
         )
         return light.reshape(-1, count, 3)
 

@@ -104,6 +104,8 @@ def crooked_faces(
     Beside the line between a face's two cuts, the hidden side is asked whether it is hidden, and the seen one whether
     it is seen.
     """
+    if len(cuts.start) == 0:
+        return np.zeros(0, dtype=np.int64)
     count = len(faces.triangle)
     of_corner = places.of_corner[:count]
     own = _own_cuts(of_corner, cuts, np.ones((count, 3), dtype=bool))

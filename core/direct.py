@@ -29,6 +29,10 @@ LARGEST_EMITTER_COUNT = 4096
 FEW_EMITTERS = 16
 """Emitters of which each gets a ray of its own beside its share: where nothing is hidden the result is then exact."""
 
+GRAZING = 1e-7
+"""Cosine at an emitter below which a receiver lies in its plane, as the emitter's own points do up to rounding: it sees
+none of it. Double precision leaves 1e-11 at 10 km from the origin."""
+
 NEAR = 4.0
 """Distance, in radii of an emitter, within which its share is computed exactly."""
 
@@ -91,6 +95,7 @@ def direct_irradiance(
     keys: Ints,
     shadow_rays: int,
     seed: int,
+    neighbours: int = 1,
 ) -> tuple[Floats, NDArray[np.bool_]]:
     """Direct irradiance over pi at points.
 
@@ -104,6 +109,8 @@ def direct_irradiance(
         Numbers of the receivers, for their sampling patterns.
     shadow_rays : int
         Rays each receiver spreads over all emitters.
+    neighbours : int
+        So many points in a row lie close together on a plane: what to expect of the emitters is found for all at once.
 
     Returns
     -------
@@ -115,11 +122,11 @@ def direct_irradiance(
     penumbra = np.zeros(len(points), dtype=bool)
     if len(emitters.triangle) == 0 or len(points) == 0:
         return total, penumbra
-    size = max(1, PAIRS_PER_BATCH // max(len(emitters.triangle), shadow_rays))
+    size = neighbours * max(1, PAIRS_PER_BATCH // max(len(emitters.triangle), neighbours * shadow_rays))
     for first in range(0, len(points), size):
         part = slice(first, first + size)
         total[part], penumbra[part] = _direct_part(
-            emitters, rays, points[part], normals[part], lift[part], keys[part], shadow_rays, seed
+            emitters, rays, points[part], normals[part], lift[part], keys[part], shadow_rays, seed, neighbours
         )
     return total, penumbra
 
@@ -133,19 +140,25 @@ def _direct_part(
     keys: Ints,
     shadow_rays: int,
     seed: int,
+    neighbours: int,
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    share = _expected_shares(emitters, points, normals)
-    lit = np.flatnonzero(share.any(axis=1))
+    together = points.reshape(-1, neighbours, 3)
+    centre = together.mean(axis=1)
+    spread = np.linalg.norm(together - centre[:, None], axis=2).max(axis=1)
+    share = _expected_shares(emitters, centre, normals[::neighbours], spread)
+    group = np.repeat(np.arange(len(centre)), neighbours)
+    lit = np.flatnonzero(share.any(axis=1)[group])
     count = len(points)
     irradiance, penumbra = np.zeros((count, 3)), np.zeros(count, dtype=bool)
     if len(lit) == 0:
         return irradiance, penumbra
-    points, normals, lift, share = points[lit], normals[lit], lift[lit], share[lit]
+    points, normals, lift, group = points[lit], normals[lit], lift[lit], group[lit]
     shift = hashed(keys[lit], 3, seed)
-    emitter = _systematic_draw(share, shadow_rays, shift[:, 2])
+    emitter = _systematic_draw(share, group, shadow_rays, shift[:, 2])
     all_once = share.shape[1] <= FEW_EMITTERS
+    drawn_rays = shadow_rays
     if all_once:
-        everyone = np.broadcast_to(np.arange(share.shape[1]), share.shape)
+        everyone = np.broadcast_to(np.arange(share.shape[1]), (len(lit), share.shape[1]))
         emitter = np.sort(np.concatenate([emitter, everyone], axis=1), axis=1)
         shadow_rays += share.shape[1]
 
@@ -166,7 +179,7 @@ def _direct_part(
     visible = np.divide(visible, weight, out=np.zeros_like(visible), where=weight > 0.0)
     row, chosen = receiver[starts], flat_emitter[starts]
     factor = point_to_triangle(points[row], normals[row], emitters.corners[chosen])
-    probability = np.ones(len(row)) if all_once else np.minimum(1.0, share[row, chosen] * shadow_rays)
+    probability = np.ones(len(row)) if all_once else np.minimum(1.0, share[group[row], chosen] * drawn_rays)
     light = (factor * visible / probability)[:, None] * emitters.radiance[chosen]
     for channel in range(3):
         irradiance[lit, channel] = np.bincount(row, weights=light[:, channel], minlength=len(lit))
@@ -177,47 +190,66 @@ def _direct_part(
     return irradiance, penumbra
 
 
-def _expected_shares(emitters: Emitters, points: Floats, normals: Floats) -> Floats:
-    """Each emitter's share of the unoccluded direct light of each point, (n, k); 0 where it surely sends none.
+def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, spread: Floats) -> Floats:
+    """Each emitter's share of the unoccluded direct light about each point, (n, k); 0 where it surely sends none.
 
     Far emitters are taken as points at their centres, near ones by their exact form factor: a wall that glows beside
-    the point may be most of what it sees, and its centre seen edge on.
+    the point may be most of what it sees, and its centre seen edge on. In single precision: these are only chances.
+
+    Parameters
+    ----------
+    spread : (n,) float
+        Receivers lie within this distance of the point, in its plane.
     """
     origin = emitters.corners.mean(axis=(0, 1))
-    centre, at = emitters.corners.mean(axis=1) - origin, points - origin
-    radius = np.linalg.norm(emitters.corners - origin - centre[:, None], axis=2).max(axis=1)
+    centres = emitters.corners.mean(axis=1) - origin
+    radius = np.linalg.norm(emitters.corners - origin - centres[:, None], axis=2).max(axis=1).astype(np.float32)
+    centre, at, axis = centres.astype(np.float32), (points - origin).astype(np.float32), normals.astype(np.float32)
+    room = spread.astype(np.float32)[:, None]
     square = (at**2).sum(axis=1)[:, None] + (centre**2).sum(axis=1) - 2.0 * (at @ centre.T)
-    square = np.maximum(square, np.finfo(np.float64).tiny)
-    distance = np.sqrt(square)
+    np.maximum(square, np.finfo(np.float32).tiny, out=square)
     # The highest point of the emitter decides, so that one which only peeks over the horizon is not forgotten.
-    height = normals @ centre.T - (normals * at).sum(axis=1)[:, None] + radius
-    facing = at @ emitters.normals.T - (centre * emitters.normals).sum(axis=1)
-    facing = np.where(emitters.one_sided, facing, np.abs(facing))
+    height = axis @ centre.T - (axis * at).sum(axis=1)[:, None] + radius
+    facing = at @ emitters.normals.T.astype(np.float32) - (centre * emitters.normals).sum(axis=1).astype(np.float32)
+    facing = np.where(emitters.one_sided, facing, np.abs(facing)) + room
     possible = (height > 0.0) & (facing > 0.0)
-    value = np.clip(height / distance, 0.0, 1.0) * facing / distance * emitters.areas / (square + emitters.areas)
+    areas = emitters.areas.astype(np.float32)
+    distance = np.sqrt(square)
+    value = np.minimum(height / distance, 1.0) * np.minimum(facing / distance, 1.0) * (areas / (square + areas))
     value[~possible] = 0.0
-    row, near = np.nonzero(possible & (square < NEAR * NEAR * radius * radius))
-    value[row, near] = np.pi * point_to_triangle(points[row], normals[row], emitters.corners[near])
-    value *= emitters.radiance @ LUMINANCE
+    row, near = np.nonzero(possible & (square < (NEAR * radius) ** 2))
+    exact = np.pi * point_to_triangle(points[row], normals[row], emitters.corners[near])
+    # Where receivers are spread about the point, one may see what the point does not.
+    value[row, near] = exact + np.where(spread[row] > 0.0, 0.1, 0.0) * value[row, near]
+    value *= (emitters.radiance @ LUMINANCE).astype(np.float32)
     total = value.sum(axis=1, keepdims=True)
     share: Floats = np.divide(value, total, out=np.zeros_like(value), where=total > 0.0)
     return share
 
 
-def _systematic_draw(share: Floats, draws: int, offset: Floats) -> Ints:
-    """Draw emitters in proportion to their shares at equal steps from a random start; sorted, (n, draws)."""
-    count, emitters = share.shape
-    cumulative = np.cumsum(share, axis=1)
-    cumulative /= cumulative[:, -1:]
-    row = np.arange(count, dtype=np.float64)[:, None]
-    step = (np.arange(draws) + offset[:, None]) / draws
-    found = np.searchsorted((cumulative + row).ravel(), (step + row).ravel(), side="right").reshape(count, draws)
-    drawn = np.clip(found - np.arange(count)[:, None] * emitters, 0, emitters - 1)
-    # Rounding may land on a neighbour without a share; take the last one that has some.
-    last = emitters - 1 - np.argmax(share[:, ::-1] > 0.0, axis=1)
-    drawn = np.minimum(drawn, last[:, None])
-    empty = np.take_along_axis(share, drawn, axis=1) <= 0.0
-    return np.where(empty, np.argmax(share, axis=1)[:, None], drawn) if empty.any() else drawn
+def _systematic_draw(share: Floats, group: Ints, draws: int, offset: Floats) -> Ints:
+    """Draw emitters in proportion to shares (g, k) at equal steps from a random start; sorted.
+
+    Parameters
+    ----------
+    group : (n,) int
+        The row of `share` each receiver draws from.
+    offset : (n,) float, 0..1
+
+    Returns
+    -------
+    (n, draws) int
+    """
+    emitters = share.shape[1]
+    cumulative = np.cumsum(share, axis=1, dtype=np.float64)
+    last = np.maximum(cumulative[:, -1:], np.finfo(np.float64).tiny)
+    cumulative = cumulative / last + np.arange(len(share))[:, None]
+    step = (np.arange(draws) + offset[:, None]) / draws + group[:, None]
+    found = np.searchsorted(cumulative.ravel(), step.ravel(), side="right").reshape(len(group), draws)
+    drawn = np.clip(found - group[:, None] * emitters, 0, emitters - 1)
+    # Rounding may land on a neighbour without a share; take the likeliest instead.
+    empty = share[group[:, None], drawn] <= 0.0
+    return np.where(empty, np.argmax(share, axis=1)[group][:, None], drawn) if empty.any() else drawn
 
 
 def _points_on(corners: Floats, weights: Floats) -> Floats:
@@ -232,5 +264,6 @@ def _kernel(points: Floats, normals: Floats, target: Floats, emitters: Emitters,
     cosine = np.maximum(np.einsum("mx,mx->m", toward, normals), 0.0)
     facing = -np.einsum("mx,mx->m", toward, emitters.normals[chosen])
     facing = np.where(emitters.one_sided[chosen], np.maximum(facing, 0.0), np.abs(facing))
+    facing[facing <= GRAZING * np.sqrt(square)] = 0.0
     value: Floats = cosine * facing / np.maximum(square * square, np.finfo(np.float64).tiny)
     return value
