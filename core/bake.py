@@ -150,7 +150,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
 
     clock.start("Reconstructing", 0.98, 1.0)
-    meshes, warnings = baked_meshes(scene, surfaces, faces, face, irradiance, settings.output)
+    meshes, warnings = baked_meshes(scene, surfaces, lit, faces, face, irradiance, settings.output)
     clock.stop()
     told: dict[str, Any] = {
         "patches": len(tree.leaves()),

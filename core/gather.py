@@ -132,6 +132,8 @@ def _indirect_part(
     valid = rays - (elements == BURIED).sum(axis=1)
     means = seen.sum(axis=1, dtype=np.float64) / np.maximum(valid, 1)[:, None]
     half = seen[:, : rays // 2].mean(axis=1) - seen[:, rays // 2 :].mean(axis=1)
+    # Inside a solid the few rays that slip out at an edge mean nothing.
+    means[valid < LEAST_VALID_SHARE * rays] = 0.0
     hidden = _is_hidden(transport, receivers.sizes[part], elements, distance)
     return means, np.abs(half @ LUMINANCE) / 2.0, hidden
 

@@ -14,12 +14,20 @@ from .surfaces import Surfaces
 
 
 def baked_meshes(
-    scene: Scene, surfaces: Surfaces, faces: Faces, face: Ints, irradiance: Floats, output: str
+    scene: Scene,
+    surfaces: Surfaces,
+    lit: NDArray[np.bool_],
+    faces: Faces,
+    face: Ints,
+    irradiance: Floats,
+    output: str,
 ) -> tuple[tuple[BakedMesh, ...], list[str]]:
     """Make the meshes of the result, and warnings about those whose lit side is their back.
 
     Parameters
     ----------
+    lit : (shells, 2) bool
+        Whether light reaches the front and the back of each shell.
     face : (f,) int
         Face of each face side with values: all fronts in order, then some backs.
     irradiance : (f, 3, 3) float, W m^-2 sr^-1
@@ -29,7 +37,7 @@ def baked_meshes(
     front = irradiance[:count]
     back, has_back = np.zeros_like(front), np.zeros(count, dtype=bool)
     back[face[count:]], has_back[face[count:]] = irradiance[count:], True
-    turned = _lit_from_behind(surfaces, faces, front, back, has_back)
+    turned = (~lit[:, 0] & lit[:, 1])[surfaces.shell_of_triangle[faces.triangle]]
     warnings, meshes = [], []
     mesh_of_face = surfaces.mesh_of_triangle[faces.triangle]
     for number, mesh in enumerate(scene.meshes):
@@ -47,18 +55,6 @@ def baked_meshes(
         else:
             meshes.append(_refined(surfaces, faces, number, chosen, *values, turned[chosen]))
     return tuple(meshes), warnings
-
-
-def _lit_from_behind(
-    surfaces: Surfaces, faces: Faces, front: Floats, back: Floats, has_back: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """Faces of shells whose front gets no light at all while their back does, (s,) bool."""
-    shell = surfaces.shell_of_triangle[faces.triangle]
-    size = len(surfaces.closed)
-    on_front = np.bincount(shell, weights=front.sum(axis=(1, 2)), minlength=size)
-    on_back = np.bincount(shell, weights=back.sum(axis=(1, 2)) * has_back, minlength=size)
-    result: NDArray[np.bool_] = ((on_front == 0.0) & (on_back > 0.0))[shell]
-    return result
 
 
 def _original(
