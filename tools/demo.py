@@ -27,16 +27,18 @@ GAP = 8
 
 def side_by_side(room: str, report: dict[str, Any]) -> Path:
     """Put the picture of the baked room beside the path-traced one, each with a caption."""
+    pictures = report["pictures"]
+    traced = "Path traced and denoised" if pictures["denoised"] else "Path traced"
     captions = {
         f"{room}_baked.png": f"Baked in {report['seconds']['total']:.1f} s, {report['vertices']:,} vertices",
-        f"{room}_path_traced.png": f"Path traced by Cycles in {report['pictures']['path_traced']:.0f} s",
+        f"{room}_path_traced.png": f"{traced} by Cycles in {pictures['path_traced']:.0f} s",
     }
-    pictures = [Image.open(FOLDER / name).convert("RGB") for name in captions]
-    width, height = pictures[0].size
+    images = [Image.open(FOLDER / name).convert("RGB") for name in captions]
+    width, height = images[0].size
     sheet = Image.new("RGB", (2 * width + GAP, height + CAPTION_HEIGHT), (24, 24, 24))
     draw = ImageDraw.Draw(sheet)
     font = ImageFont.load_default(size=15)
-    for column, (picture, caption) in enumerate(zip(pictures, captions.values(), strict=True)):
+    for column, (picture, caption) in enumerate(zip(images, captions.values(), strict=True)):
         left = column * (width + GAP)
         sheet.paste(picture, (left, 0))
         draw.text((left + width / 2, height + CAPTION_HEIGHT / 2), caption, font=font, fill="white", anchor="mm")

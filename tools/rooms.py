@@ -37,6 +37,7 @@ class Surface:
     faces : tuple of tuples of vertex indices
     reflectance : diffuse albedo, linear RGB, 0..1
     emission : emitted radiance, linear RGB, W m^-2 sr^-1
+    smooth : whether it is shaded smoothly, its faces being those of something round
     """
 
     name: str
@@ -45,6 +46,7 @@ class Surface:
     faces: tuple[Face, ...]
     reflectance: Colour
     emission: Colour = BLACK
+    smooth: bool = False
 
 
 @dataclass(frozen=True)
@@ -232,10 +234,135 @@ def paper_scene_1() -> list[Surface]:
     ]
 
 
-ROOMS: dict[str, Callable[[], list[Surface]]] = {"cornell_box": cornell_box, "paper_scene_1": paper_scene_1}
+# ---------------------------------------------------------------------------------------------- a studio
+
+STUDIO_PLASTER: Colour = (0.78, 0.76, 0.72)
+STUDIO_CEILING: Colour = (0.82, 0.82, 0.8)
+STUDIO_SAGE: Colour = (0.36, 0.46, 0.36)
+STUDIO_FLOOR: Colour = (0.4, 0.26, 0.15)
+STUDIO_OAK: Colour = (0.55, 0.36, 0.2)
+STUDIO_PAINT: Colour = (0.8, 0.8, 0.8)
+STUDIO_RUG: Colour = (0.5, 0.12, 0.1)
+STUDIO_CLAY: Colour = (0.6, 0.28, 0.16)
+STUDIO_DAYLIGHT: Colour = (7.0, 8.5, 10.5)
+STUDIO_BULB: Colour = (40.0, 26.0, 13.0)
+STUDIO_BOOKS: tuple[Colour, ...] = ((0.55, 0.1, 0.08), (0.1, 0.2, 0.42), (0.7, 0.55, 0.2), (0.12, 0.3, 0.2))
+
+
+def box(name: str, material: str, low: Point, high: Point, reflectance: Colour) -> Surface:
+    """Return a closed box between two corners."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    ring = ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
+    vertices = tuple((x, y, z) for z in (z0, z1) for x, y in ring)
+    return Surface(name, material, vertices, CUBE_FACES, reflectance)
+
+
+def sphere(
+    name: str, material: str, centre: Point, radius: float, reflectance: Colour, emission: Colour = BLACK
+) -> Surface:
+    """Return a smooth sphere of 32 segments and 16 rings, closed by triangles at its poles."""
+    segments, rings = 32, 16
+    (cx, cy, cz), vertices = centre, []
+    for ring in range(1, rings):
+        polar = math.pi * ring / rings
+        for segment in range(segments):
+            angle = 2.0 * math.pi * segment / segments
+            level, out = math.cos(polar), math.sin(polar)
+            point = (out * math.cos(angle), out * math.sin(angle), level)
+            vertices.append((cx + radius * point[0], cy + radius * point[1], cz + radius * point[2]))
+    top, bottom = len(vertices), len(vertices) + 1
+    vertices += [(cx, cy, cz + radius), (cx, cy, cz - radius)]
+    faces: list[Face] = []
+    last = (rings - 2) * segments
+    for k in range(segments):
+        j = (k + 1) % segments
+        faces.append((top, k, j))
+        faces += [(r + k, r + segments + k, r + segments + j, r + j) for r in range(0, last, segments)]
+        faces.append((bottom, last + j, last + k))
+    return Surface(name, material, tuple(vertices), tuple(faces), reflectance, emission, smooth=True)
+
+
+def studio() -> list[Surface]:
+    """Return a furnished room of 4 x 4.4 x 2.6 m as an artist would have it: thin legs, a shelf, a window, a bulb.
+
+    Daylight comes through the panes of a window in the left wall; the room is open to the front.
+    """
+    left, right, front, back, top = -2.0, 2.0, 0.0, 4.4, 2.6
+    floor = ((left, front, 0.0), (right, front, 0.0), (right, back, 0.0), (left, back, 0.0))
+    upper = tuple((x, y, top) for x, y, _ in floor)
+    sill, lintel, near, far = 0.9, 2.1, 1.4, 3.2
+    window = tuple((left, y, z) for y, z in ((near, sill), (far, sill), (far, lintel), (near, lintel)))
+    left_wall = (floor[0], floor[3], upper[3], upper[0], *window)
+
+    def wall(name: str, material: str, corners: tuple[Point, ...], reflectance: Colour) -> Surface:
+        return Surface(name, material, corners, ((0, 1, 2, 3),), reflectance)
+
+    room = [
+        wall("Floor", "Floorboards", floor, STUDIO_FLOOR),
+        wall("Ceiling", "Ceiling Paint", (upper[0], upper[3], upper[2], upper[1]), STUDIO_CEILING),
+        wall("Back Wall", "Sage Paint", (floor[3], floor[2], upper[2], upper[3]), STUDIO_SAGE),
+        wall("Right Wall", "Plaster", (floor[2], floor[1], upper[1], upper[2]), STUDIO_PLASTER),
+        Surface(
+            "Left Wall",
+            "Plaster",
+            left_wall,
+            tuple((k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4) for k in range(4)),
+            STUDIO_PLASTER,
+        ),
+    ]
+    pane = [(x - 0.12, y, z) for x, y, z in window]
+    light = [
+        Surface("Window", "Daylight", tuple(pane), ((0, 1, 2, 3),), BLACK, STUDIO_DAYLIGHT),
+        sphere("Bulb", "Bulb", (0.75, 2.5, 1.95), 0.07, BLACK, STUDIO_BULB),
+    ]
+    outer, inner = left - 0.12, left
+    frame = {
+        "Bottom": ((outer, near - 0.04, sill - 0.04), (inner + 0.1, far + 0.04, sill)),
+        "Top": ((outer, near - 0.04, lintel), (inner + 0.02, far + 0.04, lintel + 0.04)),
+        "Front": ((outer, near - 0.04, sill), (inner + 0.02, near, lintel)),
+        "Back": ((outer, far, sill), (inner + 0.02, far + 0.04, lintel)),
+        "Middle": ((outer + 0.05, 2.28, sill), (outer + 0.09, 2.32, lintel)),
+        "Bar": ((outer + 0.05, near, 1.63), (outer + 0.09, far, 1.66)),
+    }
+    fittings = [box(f"Window Frame {k}", "White Paint", low, high, STUDIO_PAINT) for k, (low, high) in frame.items()]
+    fittings.append(box("Bulb Cord", "White Paint", (0.745, 2.495, 2.03), (0.755, 2.505, top), STUDIO_PAINT))
+    fittings.append(box("Rug", "Rug", (-1.1, 1.2, 0.0), (1.5, 3.3, 0.012), STUDIO_RUG))
+    return [*room, *light, *fittings, *_studio_furniture()]
+
+
+def _studio_furniture() -> list[Surface]:
+    """Return a table with a ball, a bowl's worth of cubes and a stool, and a shelf of books on the back wall."""
+    surfaces = [box("Table Top", "Oak", (-0.5, 2.0, 0.71), (0.9, 2.8, 0.74), STUDIO_OAK)]
+    for k, (x, y) in enumerate(((-0.46, 2.04), (0.83, 2.04), (0.83, 2.73), (-0.46, 2.73))):
+        surfaces.append(box(f"Table Leg {k + 1}", "Oak", (x, y, 0.0), (x + 0.03, y + 0.03, 0.71), STUDIO_OAK))
+    surfaces.append(sphere("Ball", "Clay", (-0.05, 2.35, 0.90), 0.16, STUDIO_CLAY))
+    surfaces.append(cube("Box on the Table", "White Paint", (0.55, 2.45, 0.74), 0.18, 25.0, STUDIO_PAINT))
+    surfaces.append(box("Stool Seat", "White Paint", (-0.95, 1.5, 0.43), (-0.6, 1.85, 0.46), STUDIO_PAINT))
+    for k, (x, y) in enumerate(((-0.93, 1.52), (-0.645, 1.52), (-0.645, 1.805), (-0.93, 1.805))):
+        surfaces.append(
+            box(f"Stool Leg {k + 1}", "White Paint", (x, y, 0.0), (x + 0.025, y + 0.025, 0.43), STUDIO_PAINT)
+        )
+    surfaces.append(sphere("Floor Ball", "Ball Paint", (1.3, 1.6, 0.222), 0.21, STUDIO_BOOKS[1]))
+    for k, height in enumerate((1.25, 1.65)):
+        surfaces.append(box(f"Shelf {k + 1}", "Oak", (0.3, 4.15, height), (1.7, 4.4, height + 0.025), STUDIO_OAK))
+    x = 0.4
+    for k, (thick, tall) in enumerate(((0.04, 0.24), (0.06, 0.28), (0.03, 0.22), (0.05, 0.26), (0.045, 0.23))):
+        low, high = (x, 4.2, 1.275), (x + thick, 4.38, 1.275 + tall)
+        surfaces.append(box(f"Book {k + 1}", f"Cover {k % 4 + 1}", low, high, STUDIO_BOOKS[k % 4]))
+        x += thick + 0.004
+    surfaces.append(sphere("Shelf Ball", "Clay", (1.2, 4.27, 1.775), 0.1, STUDIO_CLAY))
+    return surfaces
+
+
+ROOMS: dict[str, Callable[[], list[Surface]]] = {
+    "cornell_box": cornell_box,
+    "paper_scene_1": paper_scene_1,
+    "studio": studio,
+}
 
 CAMERAS: dict[str, Camera] = {
     # Published: at (278, 273, -800) mm, looking along z, focal length 35 mm, film 25 mm.
     "cornell_box": Camera(_from_cornell(278, 273, -800), _from_cornell(278, 273, 0), 35.0, 25.0),
     "paper_scene_1": Camera((0.0, -5.2, 1.5), (0.0, 2.0, 1.5), 45.0, 36.0, 0.75),
+    "studio": Camera((0.1, -4.6, 1.45), (0.0, 2.0, 1.25), 40.0, 36.0, 0.68),
 }
