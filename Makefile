@@ -5,7 +5,7 @@ PYTHON ?= python3
 MAIN := .venv/main/bin/python
 
 .DEFAULT_GOAL := help
-.PHONY: help venv zip demo test test-core test-blender bench lint format clean
+.PHONY: help venv zip demo test test-core test-blender bench compare lint format clean
 
 help: ## Say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
@@ -36,6 +36,10 @@ endif
 bench: ## Compare with other programs: accuracy, seconds, charts
 	@$(PYTHON) -m tools.environments bench
 	@$(MAIN) -m bench
+
+compare: ## Adaptive against uniform subdivision at the same minimum size, as a table
+	@$(PYTHON) -m tools.environments bench
+	@$(MAIN) -m bench.compare
 
 lint: venv ## Formatting, lint and types, without changing anything
 	@$(MAIN) -m tools.run_tests lint
