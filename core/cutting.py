@@ -45,14 +45,17 @@ class CutEdges:
         Points, start seen and end hidden.
     seen, hidden : (k,) int
         Receivers of the two ends.
+    change : (k,) float
+        Where the edge stops being seen, 0 at the start.
     share : (k,) float
-        Where the edge is cut, 0 at the start.
+        Where it is cut: there, unless that is too close to an end.
     """
 
     start: Ints
     end: Ints
     seen: Ints
     hidden: Ints
+    change: Floats
     share: Floats
 
 
@@ -90,10 +93,10 @@ def find_cuts(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], is_hid
     low, high = np.zeros(len(start)), np.ones(len(start))
     for _ in range(BISECTIONS if len(start) else 0):
         middle = (low + high) / 2.0
-        inside = is_hidden(_along(faces, places, CutEdges(start, end, seen, unseen, middle), middle))
+        inside = is_hidden(_along(faces, places, CutEdges(start, end, seen, unseen, middle, middle), middle))
         low, high = np.where(inside, low, middle), np.where(inside, middle, high)
-    share = np.clip((low + high) / 2.0, LEAST_PIECE, 1.0 - LEAST_PIECE)
-    return CutEdges(start, end, seen, unseen, share)
+    change = (low + high) / 2.0
+    return CutEdges(start, end, seen, unseen, change, np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE))
 
 
 def crooked_faces(
@@ -162,8 +165,8 @@ def _within(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights:
 
 def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Receivers, Receivers]:
     """Receivers on the seen and on the hidden side of each cut."""
-    before = _along(faces, places, cuts, cuts.share - MARGIN)
-    return before, _along(faces, places, cuts, cuts.share + MARGIN)
+    before = _along(faces, places, cuts, np.maximum(cuts.change - MARGIN, 0.0))
+    return before, _along(faces, places, cuts, np.minimum(cuts.change + MARGIN, 1.0))
 
 
 def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Receivers:

@@ -222,17 +222,18 @@ def _child_of_two(w: NDArray[np.float32], kind: NDArray[np.int8]) -> tuple[Ints,
 def coarse_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
     """The controlled triangulation: the surfaces' triangles, the slender ones halved along their longest edge.
 
-    Halving the longest edge never lowers the smallest angle by more than half (Rivara 1984), and stops where an edge is
-    shorter than four times `smallest`, so that refinement below still has room.
+    Halving the longest edge never lowers the smallest angle by more than half (Rivara 1984). It ends where the pieces
+    are no longer than a few times the width of the triangle they come from, so that a strip becomes a row of them, and
+    where an edge is shorter than four times `smallest`, so that refinement below still has room.
     """
     tree = PatchTree(surfaces)
     nodes = tree.leaves()
+    longest = tree.sizes(nodes)
+    width = 2.0 * surfaces.areas / np.maximum(longest, np.finfo(np.float64).tiny)
+    limit = np.maximum(LARGEST_ASPECT * width, 4.0 * smallest)
     while len(nodes):
         lengths = edge_lengths(tree.points, tree.corners[nodes])
-        a, b, c = (tree.points[tree.corners[nodes, k]] for k in range(3))
-        double_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-        longest = lengths.max(axis=1)
-        slender = (longest * longest > LARGEST_ASPECT * double_area) & (longest >= 4.0 * smallest)
+        slender = lengths.max(axis=1, initial=0.0) > limit[tree.triangle[nodes]]
         nodes, lengths = nodes[slender], lengths[slender]
         nodes = tree.bisect(nodes, lengths.argmax(axis=1))
     return tree
