@@ -40,9 +40,10 @@ def test_a_furnace_of_separate_walls_is_a_furnace(reflectance):
 def test_a_sphere_is_a_furnace_too():
     scene, expected = exact.furnace_sphere(0.8)
     largest, mean = spread_of(bake(scene, SETTINGS), expected["radiosity"])
-    # A fifth of the light comes from 320 emitters among which 16 to 32 shadow rays choose, which leaves noise.
-    assert mean < 1e-3
-    assert largest < 0.03
+    # 320 emitters share 32 shadow rays a patch. Drawing a tenth of them leaves a few percent at each patch and vertex,
+    # and over 320 patches less than half a percent.
+    assert mean < 5e-3
+    assert largest < 0.05
 
 
 def test_a_furnace_with_its_front_outward_is_a_bulb():
