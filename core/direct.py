@@ -208,8 +208,9 @@ def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, spread
     room = spread.astype(np.float32)[:, None]
     square = (at**2).sum(axis=1)[:, None] + (centre**2).sum(axis=1) - 2.0 * (at @ centre.T)
     np.maximum(square, np.finfo(np.float32).tiny, out=square)
-    # The highest point of the emitter decides, so that one which only peeks over the horizon is not forgotten.
-    height = axis @ centre.T - (axis * at).sum(axis=1)[:, None] + radius
+    # Near the horizon the highest point of the emitter counts as well: one that only peeks over it is not forgotten.
+    height = axis @ centre.T - (axis * at).sum(axis=1)[:, None]
+    height = np.where(height > radius, height, (height + radius) / 2.0)
     facing = at @ emitters.normals.T.astype(np.float32) - (centre * emitters.normals).sum(axis=1).astype(np.float32)
     facing = np.where(emitters.one_sided, facing, np.abs(facing)) + room
     possible = (height > 0.0) & (facing > 0.0)
