@@ -4,9 +4,10 @@
 
 The sequences are additive recurrences on the generalised golden ratio (M. Roberts 2018): point i has coordinates
 frac(i * a_d) with a_d = g**-(d+1) and g the positive root of x**(dim+1) = x + 1. A fixed number of patterns are made of
-them, each shifted by its own random numbers (Cranley & Patterson 1976); a receiver takes the pattern that its hash
-names and turns it about its normal by an angle that its hash gives. So a ray costs no more than two products of small
-matrices, and depends on nothing but the seed and the receiver's number.
+them, each shifted by its own random numbers (Cranley & Patterson 1976); a patch takes the pattern that its hash names
+and turns it about its normal by an angle that its hash gives. So a ray costs no more than two products of small
+matrices, and depends on nothing but the seed and the patch's number. Vertices, which the eye compares, all take one
+lattice.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from numpy.typing import NDArray
 from .scene import Floats, Ints
 
 PATTERNS = 64
-"""Patterns that patches share; turned about their normals, no two patches have the same rays. Vertices, which the eye
-compares, all take the first one."""
+"""Patterns that patches share; turned about their normals, no two patches have the same rays."""
+
+GOLDEN = 0.6180339887498949
 
 Singles = NDArray[np.float32]
 
@@ -76,6 +78,16 @@ def hemisphere(square: Floats) -> Floats:
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=-1)
 
 
+def hemisphere_lattice(count: int, seed: int) -> Singles:
+    """So many directions about +z with density cos / pi, as even as they can be: a shifted golden lattice, (count, 3).
+
+    It cannot be continued, unlike `sequence`; 256 of its directions have a fourth of the error in the mean cosine.
+    """
+    index = np.arange(count, dtype=np.float64)
+    square = np.stack([(index + 0.5) / count, np.mod(index * GOLDEN, 1.0)], axis=1)
+    return hemisphere(shifted(square, hashed(np.zeros(1, dtype=np.int64), 2, seed))[0]).astype(np.float32)
+
+
 def frames(normals: Floats, angles: Floats) -> Singles:
     """Rows tangent, bitangent and normal of each (n, 3), turned about the normal by (n,) radians: (n, 3, 3).
 
@@ -118,10 +130,11 @@ class Patterns:
     def make(first: int, count: int, seed: int) -> Patterns:
         """Rays `first` to `first + count - 1` of each pattern; patterns with the same seed go on where others ended."""
         shifts = hashed(np.arange(PATTERNS), 4, seed)
+        # The first two steps are close to 6/7 and 3/4: good enough for positions, uneven for directions.
         points = shifted(sequence(first, count, 4), shifts)
-        weights = triangle_weights(points[..., 2:])
+        weights = triangle_weights(points[..., :2])
         positions = np.concatenate([np.ones((*weights.shape[:2], 1)), weights], axis=-1)
-        return Patterns(hemisphere(points[..., :2]).astype(np.float32), positions.astype(np.float32))
+        return Patterns(hemisphere(points[..., 2:]).astype(np.float32), positions.astype(np.float32))
 
     def choose(self, keys: Ints, seed: int) -> tuple[Ints, Floats]:
         """The pattern of each receiver and the angle it is turned by, both (n,)."""
