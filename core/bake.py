@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import refinement
-from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance
+from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance, take_bright_patches
 from .clock import Clock
 from .cutting import IsHidden, cut_faces, cut_receivers, find_cuts
 from .detail import GatherAt, Lit, light_up, light_up_in_detail
@@ -70,6 +70,9 @@ WORKING_COPIES = 6
 
 RAYS_TO_FIND_CUTS = 64
 """Rays that tell whether a place on an edge is hidden."""
+
+LARGEST_IMBALANCE = 0.03
+"""Share of the power that may be missing, or too much, before the report warns of it."""
 
 ROUND_SHARE = 0.15
 """Share of the remaining progress that one batch of traced rows stands for."""
@@ -131,10 +134,11 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 
     clock.start("Gathering", 0.5, 0.95)
     radiance = seen_radiance(transport, balance, solution, emitters)
+    bright, radiance = take_bright_patches(transport, cover, balance, solution, radiance)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
 
     def gather_at(places: Receivers) -> Gathered:
-        return gather(transport, radiance, emitters, places, effort.gather, gathering)
+        return gather(transport, radiance, (emitters, bright), places, effort.gather, gathering)
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, RAYS_TO_FIND_CUTS)
@@ -152,6 +156,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     clock.start("Reconstructing", 0.98, 1.0)
     meshes, warnings = baked_meshes(scene, surfaces, lit, faces, face, irradiance, settings.output)
     clock.stop()
+    balance_sheet = energy(balance, solution, surfaces)
     told: dict[str, Any] = {
         "patches": len(tree.leaves()),
         "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
@@ -170,13 +175,17 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         "converged": solution.converged,
         "estimated_error": shown.error(surfaces),
         "form_factor_standard_error": refinement.typical_standard_error(shares, settings.threshold),
-        "energy": energy(balance, solution, surfaces),
+        "energy": balance_sheet,
         "minimum_size": smallest,
         "minimum_face_size": finest if settings.output == "REFINED" else None,
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
         "settings": asdict(settings),
-        "warnings": [*surfaces.warnings, *warnings, *limit_warnings(rounds, solution, per_row, effort, crowded)],
+        "warnings": [
+            *surfaces.warnings,
+            *warnings,
+            *limit_warnings(rounds, solution, per_row, effort, balance_sheet, crowded),
+        ],
     }
     return BakeResult(meshes, told)
 
@@ -237,7 +246,12 @@ def cut_where_hidden(gather_at: GatherAt, is_hidden: IsHidden, shown: Lit) -> tu
 
 
 def limit_warnings(
-    rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort, crowded: bool
+    rounds: refinement.Refinement,
+    solution: Solution,
+    rays_per_patch: int,
+    effort: Effort,
+    balance: dict[str, float],
+    crowded: bool,
 ) -> list[str]:
     """Sentences on limits that the bake ran into."""
     warnings = []
@@ -252,3 +266,13 @@ def limit_warnings(
     if crowded:
         warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")
     return warnings
+
+
+def imbalance_warnings(balance: dict[str, float]) -> list[str]:
+    """A sentence when emitted and absorbed light do not add up."""
+    if abs(balance["imbalance"]) <= LARGEST_IMBALANCE:
+        return []
+    return [
+        f"{abs(balance['imbalance']):.0%} of the light is unaccounted for, so the result is wrong somewhere; "
+        "try a smaller minimum size or a higher quality, and look for a lamp that almost touches another surface"
+    ]

@@ -9,13 +9,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .direct import Emitters, direct_irradiance
+from .direct import LUMINANCE, Emitters, direct_irradiance
 from .errors import UnsolvableError
 from .gather import Radiance
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
-from .transport import ESCAPED, Cover, Shares, Transport, sample_points
+from .transport import ESCAPED, Cover, Shares, Transport, element_normals, sample_points
+
+BRIGHT = 6.0
+"""Times the mean radiance of all patches above which one is sampled explicitly, as emitters are."""
+
+MOST_BRIGHT_PATCHES = 512
 
 POINTS_PER_PATCH = 4
 """Points of a patch at which direct light is computed for the transport."""
@@ -146,6 +151,37 @@ def seen_radiance(transport: Transport, balance: Balance, solution: Solution, em
     values = np.zeros((max(2 * len(transport.tree), int(balance.elements.max(initial=0)) + 1), 3))
     values[balance.elements] = solution.reflected + explicit_emission(transport, balance, emitters)
     return Radiance.of(values, transport.surfaces.world)
+
+
+def take_bright_patches(
+    transport: Transport, cover: Cover, balance: Balance, solution: Solution, radiance: Radiance
+) -> tuple[Emitters, Radiance]:
+    """Take the patches out of what rays look up that few rays would find, and much brighter than the rest.
+
+    The ceiling above a lamp is a lamp itself: left to chance, it would streak whatever it lights.
+
+    Returns
+    -------
+    The patches as emitters of one side, and the radiance without them.
+    """
+    tree = transport.tree
+    luminance = solution.reflected @ LUMINANCE
+    mean = float((balance.areas * luminance).sum() / balance.areas.sum())
+    whole = (balance.elements == balance.base) & (cover.twin[balance.base] < 0) & (balance.buried == 0.0)
+    weight = np.where(whole & (luminance > BRIGHT * mean), balance.areas * luminance**2, 0.0)
+    count = min(int((weight > 0.0).sum()), MOST_BRIGHT_PATCHES)
+    chosen = np.sort(np.argsort(-weight, kind="stable")[:count])
+    elements = balance.elements[chosen]
+    values = radiance.values.copy()
+    values[elements] = 0.0
+    return Emitters(
+        np.full(count, -1, dtype=np.int64),
+        tree.points[tree.corners[elements >> 1]],
+        element_normals(transport.surfaces, tree, elements),
+        balance.areas[chosen],
+        radiance.values[elements].astype(np.float64),
+        np.ones(count, dtype=bool),
+    ), Radiance(values)
 
 
 def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:

@@ -89,12 +89,15 @@ class Gathered:
 def gather(
     transport: Transport,
     radiance: Radiance,
-    emitters: Emitters,
+    emitters: tuple[Emitters, ...],
     receivers: Receivers,
     counts: GatherRays,
     report: Callable[[float], None],
 ) -> Gathered:
-    """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`."""
+    """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`.
+
+    Each set of emitters has its own shadow rays.
+    """
     total = len(receivers.points)
     if total == 0:
         return Gathered(np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=bool))
@@ -107,7 +110,7 @@ def gather(
     parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
     hidden = np.concatenate([p[2] for p in parts])
-    direct = _direct(transport, emitters, receivers, np.arange(total), counts, report)
+    direct = sum((_direct(transport, each, receivers, counts, report) for each in emitters), np.zeros((total, 3)))
     return Gathered(means + direct, noise, hidden)
 
 
@@ -170,7 +173,6 @@ def _direct(
     transport: Transport,
     emitters: Emitters,
     receivers: Receivers,
-    chosen: Ints,
     counts: GatherRays,
     report: Callable[[float], None],
 ) -> Floats:
@@ -193,11 +195,12 @@ def _direct(
             return np.zeros((0, 3)), np.zeros(0, dtype=bool)
         return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
 
+    everyone = np.arange(len(receivers.points))
     if len(emitters.triangle) == 0:
-        return np.zeros((len(chosen), 3))
-    direct, penumbra = pass_over(chosen, counts.shadow, 201, 0.7, 0.8)
+        return np.zeros((len(everyone), 3))
+    direct, penumbra = pass_over(everyone, counts.shadow, 201, 0.7, 0.8)
     again = np.flatnonzero(penumbra)
-    direct[again], _ = pass_over(chosen[again], counts.penumbra, 202, 0.8, 1.0)
+    direct[again], _ = pass_over(again, counts.penumbra, 202, 0.8, 1.0)
     return direct
 
 

@@ -28,6 +28,9 @@ LONGEST_WALK = 16
 LEAST_VISITS = 3
 """Visits that make a side lit: one or two may be rays that slipped through an edge."""
 
+LEAST_SHARE = 0.01
+"""Share of the visits to be expected by its area, and of those to its front, that the back of a lit shell must get."""
+
 EXPECTED_VISITS = 20.0
 """Visits to be expected by its area without which an unvisited side of a shell means nothing."""
 
@@ -41,6 +44,8 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     area = np.bincount(surfaces.shell_of_triangle, weights=surfaces.areas, minlength=shells)
     expected = visits.sum() * area / area.sum()
     lit = visits >= LEAST_VISITS
+    # A lit shell's back that a hundredth part of the light of its area finds is reached through a crack under it.
+    lit[:, 1] &= ~((visits[:, 1] < LEAST_SHARE * expected) & (visits[:, 1] < LEAST_SHARE * visits[:, 0]))
     # What is too small to judge is taken as it most likely is: a solid where closed, lit on both sides where open.
     small = expected < EXPECTED_VISITS
     lit[small, 0] = True

@@ -18,6 +18,10 @@ NORMAL_CELLS = 1024
 """Shading normals closer than about 1/1024 count as one: corners of a smooth or flat surface share a value, corners on
 the two sides of a hard edge do not."""
 
+BORDER = 0.25
+"""A vertex is on a border when the mean way to the middles of its faces is this share of their mean distance; in the
+middle of even faces it is near 0, on a straight border about 0.5."""
+
 INWARD = 0.02
 """Share of the way from a vertex towards the middle of its faces at which light is gathered: a vertex on the border of
 a face may lie in the plane of the next wall, where no ray can tell the two sides apart."""
@@ -80,11 +84,9 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     geometric = side_normals(surfaces.normals[faces.triangle[face_of_side]], side)
     lift = normalized(mean(np.repeat(geometric, 3, axis=0)))
     position = points[corners.ravel()[first]]
-    middles = points[corners].mean(axis=1)
-    inward = mean(np.repeat(middles, 3, axis=0)) - position
+    toward = np.repeat(points[corners].mean(axis=1), 3, axis=0) - points[corners].reshape(-1, 3)
+    inward = _into_a_face(toward, mean(toward), group, count)
     size = edge_lengths(points, corners).max(axis=1)
-    # Only along the surface: towards the middle of a bulge would lead below it.
-    inward -= np.einsum("nx,nx->n", inward, lift)[:, None] * lift
     return Receivers(
         position + INWARD * inward,
         normalized(mean(shading)),
@@ -94,3 +96,30 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         group.reshape(-1, 3),
     )
+
+
+def _into_a_face(toward: Floats, mean: Floats, group: Ints, count: int) -> Floats:
+    """Way from each vertex into the face that lies most in the middle of its faces, (count, 3).
+
+    It ends on that face itself: the mean of several would lie below a hollow or a bulge. Zero where the faces surround
+    the vertex, which is then no border.
+
+    Parameters
+    ----------
+    toward : (c, 3) float
+        From the vertex of each face corner to the middle of the face.
+    mean : (count, 3) float
+        Its mean over each group.
+    group : (c,) int
+    """
+    along = np.einsum("cx,cx->c", toward, mean[group])
+    best = np.full(count, -np.inf)
+    np.maximum.at(best, group, along)
+    chosen = np.flatnonzero(along == best[group])
+    face = np.zeros(count, dtype=np.int64)
+    face[group[chosen[::-1]]] = chosen[::-1]
+    length = np.bincount(group, weights=np.linalg.norm(toward, axis=1), minlength=count) / np.bincount(
+        group, minlength=count
+    )
+    border = np.linalg.norm(mean, axis=1) > BORDER * length
+    return np.where(border[:, None], toward[face], 0.0)

@@ -69,7 +69,8 @@ def trace_all(transport: Transport, seeds: Seeds, report: Callable[[float], None
     """Trace every seed, then every element that rays met, until none is missing; returns the rows added."""
     before = transport.row_count()
     wanted = seeds()
-    wanted = wanted[~transport.has_row()[wanted]]
+    # Where only patches were split that are not baked themselves, no seed is missing, but what rays met is.
+    wanted = np.union1d(wanted[~transport.has_row()[wanted]], transport.met_but_untraced())
     while len(wanted):
         transport.trace(wanted, report)
         wanted = transport.met_but_untraced()

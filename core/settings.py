@@ -11,6 +11,9 @@ from .errors import SettingsError
 
 METHODS = ("ADAPTIVE", "UNIFORM")
 QUALITIES = ("DRAFT", "GOOD", "HIGH")
+LARGEST = 2**31 - 1
+"""Largest whole number that Blender's settings hold."""
+
 OUTPUTS = ("REFINED", "ORIGINAL")
 
 
@@ -66,9 +69,9 @@ class BakeSettings:
         ):
             if value not in allowed:
                 raise SettingsError(f"{name} is {value!r}; choose one of {', '.join(allowed)}")
-        if self.seed < 0:
-            raise SettingsError(f"Seed is {self.seed}; choose 0 or more")
-        if self.threads < 0:
+        if not 0 <= self.seed <= LARGEST:
+            raise SettingsError(f"Seed is {self.seed}; choose 0 to {LARGEST}")
+        if not 0 <= self.threads <= LARGEST:
             raise SettingsError(f"Threads is {self.threads}; choose 0 for all cores, or more")
-        if self.memory_limit < 64:
+        if not 64 <= self.memory_limit <= LARGEST:
             raise SettingsError(f"Memory limit is {self.memory_limit} MiB; choose 64 MiB or more")
