@@ -12,7 +12,7 @@ from mathutils import Vector
 from .rooms import CAMERAS, ROOMS, Camera, Surface
 
 SHORTER_SIDE = 512  # pixels; the rooms are as wide as high, or wider
-SAMPLES = 32  # few, and denoised: twenty times as many still show their grain in the dark corners
+SAMPLES = 32  # few, and denoised: without that, twelve times as many still show grain in dark corners
 SAMPLES_IF_NOT_DENOISED = 400
 
 

@@ -64,7 +64,9 @@ def print_report(room: str, report: dict[str, Any]) -> None:
             print(f"  {key.replace('_', ' '):16} {report[key]:,.6g}")
     print(f"  {'energy imbalance':16} {report['energy']['imbalance']:.2g}")
     for stage, seconds in report["seconds"].items():
-        print(f"  {'seconds, ' + stage:24} {seconds:.2f}")
+        print(f"  {'seconds, ' + stage:28} {seconds:.2f}")
+    for picture in ("path_traced", "rendered_from_baked"):
+        print(f"  {'seconds, ' + picture:28} {report['pictures'][picture]:.1f}")
     for warning in report["warnings"]:
         print(f"  warning: {warning}")
 
