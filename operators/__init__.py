@@ -23,7 +23,7 @@ def register() -> None:
     """Register the classes, then the properties and the command that use them."""
     _register_classes()
     bpy.types.Scene.radiosity = bpy.props.PointerProperty(type=settings.RadiositySettings)
-    bpy.types.Object.radiosity = bpy.props.PointerProperty(type=record.ObjectRecord)
+    bpy.types.Object.radiosity = bpy.props.PointerProperty(type=record.ObjectRecord, override={"LIBRARY_OVERRIDABLE"})
     command.register()
 
 

@@ -41,11 +41,15 @@ def store_in_place(obj: bpy.types.Object, target: Target, baked: BakedMesh, jour
 
 
 def _own_mesh(obj: bpy.types.Object, journal: Journal) -> None:
-    """Give `obj` a copy of a mesh that it shares with others, and remember the shared one."""
+    """Give `obj` a copy of a mesh that it shares with others or has from another file, and remember that mesh."""
     mesh = obj.data
-    if mesh.users - mesh.use_fake_user <= 1 and mesh.library is None:
+    of_another_file = mesh.library is not None or mesh.override_library is not None
+    if mesh.users - mesh.use_fake_user <= 1 and not of_another_file:
         return
     own = mesh.copy()
+    if own.override_library is not None:
+        # Attributes of an override are not saved, so the copy must not be one.
+        own = own.make_local()
     journal.on_failure(bpy.data.meshes.remove, own)
     obj.radiosity.shared_mesh = mesh
     journal.set(obj, "data", own)

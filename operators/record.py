@@ -13,17 +13,22 @@ REFINED_OUTPUT = "OUTPUT"
 BAKED_IN_PLACE = "ORIGINAL"
 
 
+_OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+"""Of a library override Blender saves only what is declared to differ, so all that is remembered has to be."""
+_OVERRIDABLE_LIST = {"LIBRARY_OVERRIDABLE", "USE_INSERTION"}
+
+
 class RememberedSlot(bpy.types.PropertyGroup):
     """One material slot as it was before the display material took it."""
 
-    material: bpy.props.PointerProperty(type=bpy.types.Material)
-    link: bpy.props.StringProperty()
+    material: bpy.props.PointerProperty(type=bpy.types.Material, override=_OVERRIDABLE)
+    link: bpy.props.StringProperty(override=_OVERRIDABLE)
 
 
 class RememberedAttribute(bpy.types.PropertyGroup):
     """One attribute of ours (`name`), and what a user's attribute of that name is called meanwhile (`aside`)."""
 
-    aside: bpy.props.StringProperty()
+    aside: bpy.props.StringProperty(override=_OVERRIDABLE)
 
 
 class ObjectRecord(bpy.types.PropertyGroup):
@@ -41,18 +46,19 @@ class ObjectRecord(bpy.types.PropertyGroup):
             (BAKED_IN_PLACE, "In Place", "Carries baked light on its own mesh"),
         ),
         default=NOT_BAKED,
+        override=_OVERRIDABLE,
     )
-    source: bpy.props.PointerProperty(type=bpy.types.Object)
-    hide_render: bpy.props.BoolProperty()
-    hide_viewport: bpy.props.BoolProperty()
-    hide_eye: bpy.props.BoolProperty()
-    shared_mesh: bpy.props.PointerProperty(type=bpy.types.Mesh)
-    slots: bpy.props.CollectionProperty(type=RememberedSlot)
-    slot_added: bpy.props.BoolProperty()
-    attributes: bpy.props.CollectionProperty(type=RememberedAttribute)
-    active_attribute: bpy.props.StringProperty()
-    active_color: bpy.props.StringProperty()
-    default_color: bpy.props.StringProperty()
+    source: bpy.props.PointerProperty(type=bpy.types.Object, override=_OVERRIDABLE)
+    hide_render: bpy.props.BoolProperty(override=_OVERRIDABLE)
+    hide_viewport: bpy.props.BoolProperty(override=_OVERRIDABLE)
+    hide_eye: bpy.props.BoolProperty(override=_OVERRIDABLE)
+    shared_mesh: bpy.props.PointerProperty(type=bpy.types.Mesh, override=_OVERRIDABLE)
+    slots: bpy.props.CollectionProperty(type=RememberedSlot, override=_OVERRIDABLE_LIST)
+    slot_added: bpy.props.BoolProperty(override=_OVERRIDABLE)
+    attributes: bpy.props.CollectionProperty(type=RememberedAttribute, override=_OVERRIDABLE_LIST)
+    active_attribute: bpy.props.StringProperty(override=_OVERRIDABLE)
+    active_color: bpy.props.StringProperty(override=_OVERRIDABLE)
+    default_color: bpy.props.StringProperty(override=_OVERRIDABLE)
 
 
 def forget(obj: bpy.types.Object) -> None:

@@ -16,6 +16,8 @@ _NOT_STATE = {
     # Computed by the last evaluation, which skips hidden objects.
     "bound_box",
     "dimensions",
+    # Whether a linked datablock was asked for directly; counted anew whenever the file is saved.
+    "is_library_indirect",
     # True for ever from Blender 5.0 on, where asking warns.
     "use_nodes",
     "preview",
