@@ -108,7 +108,7 @@ def _parser() -> argparse.ArgumentParser:
     how.add_argument(
         "--minimum-size", type=float, metavar="LENGTH", help="no piece is split to less than this; 0: automatic"
     )
-    how.add_argument("--method", choices=METHODS, help="split where the light changes, or everywhere")
+    how.add_argument("--method", choices=METHODS, help="split what receives much of another's light, or everything")
     how.add_argument("--quality", choices=QUALITIES, help="how many rays are traced")
     how.add_argument("--seed", type=int, help="pattern of the remaining noise")
     how.add_argument("--threads", type=int, help="cores that trace rays; 0: all")

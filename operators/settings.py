@@ -10,7 +10,11 @@ from ..core.settings import BakeSettings
 DEFAULTS = BakeSettings()
 
 METHOD_ITEMS = (
-    ("ADAPTIVE", "Adaptive", "Split surfaces only where light changes: near lamps, at shadow borders and in corners"),
+    (
+        "ADAPTIVE",
+        "Adaptive",
+        "Split surfaces that receive much of the light that leaves others, then the faces on which the light changes",
+    ),
     (
         "UNIFORM",
         "Uniform",
@@ -109,7 +113,8 @@ class RadiositySettings(bpy.types.PropertyGroup):
     memory_limit: bpy.props.IntProperty(
         name="Memory Limit (MiB)",
         description=(
-            "Memory that the bake may use for its rays, in MiB. A small limit means fewer patches and rays, and a warning"
+            "Memory that the bake may use for its rays, in MiB. "
+            "A small limit means fewer patches and rays, and a warning"
         ),
         default=DEFAULTS.memory_limit,
         min=64,
