@@ -17,7 +17,7 @@ from ..core.settings import METHODS, OUTPUTS, QUALITIES, BakeSettings
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_writable, replaced
 from .participants import rendered_objects
-from .settings import bake_settings
+from .settings import bake_settings, keep_settings
 
 NAME = "radiosity_bake"
 
@@ -135,6 +135,8 @@ def _run(options: argparse.Namespace) -> None:
     objects = _objects(options.object, context)
     output, report_path = _paths(options)
     report = bake_objects(context, objects, settings, _ProgressLines())
+    # Who opens the output finds in its panel what it was baked with.
+    keep_settings(context.scene.radiosity, settings)
     # Both files are complete before either takes its name.
     with ExitStack() as files:
         _save(files.enter_context(replaced(output)), output)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of a scene as the artist sees them; their defaults are those of `core`."""
 
+from dataclasses import asdict
+
 import bpy
 import numpy as np
 
@@ -52,7 +54,7 @@ class RadiositySettings(bpy.types.PropertyGroup):
             "Smaller values give more vertices and finer shadows"
         ),
         default=DEFAULTS.threshold,
-        min=0.0001,
+        min=0.000001,
         max=1.0,
         soft_min=0.002,
         soft_max=0.2,
@@ -156,3 +158,9 @@ def bake_settings(properties: RadiositySettings) -> BakeSettings:
         threads=properties.threads,
         memory_limit=properties.memory_limit,
     )
+
+
+def keep_settings(properties: RadiositySettings, settings: BakeSettings) -> None:
+    """Write `settings` into the scene's."""
+    for name, value in asdict(settings).items():
+        setattr(properties, name, value)

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import bpy
 import pytest
+from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.operators import command
 from radiosity_bake.operators.command import main
+from radiosity_bake.operators.settings import bake_settings
 
 from tests.blender.making import add_cube, add_lamp_mesh, add_object, add_plane, colours_of
 
@@ -79,6 +81,18 @@ def test_settings_come_from_the_options_and_else_from_the_file(room, monkeypatch
     assert (settings.threshold, settings.minimum_size, settings.seed) == (0.05, 0.1, 11)
     assert (settings.quality, settings.method, settings.output) == ("HIGH", "UNIFORM", "ORIGINAL")
     assert (settings.threads, settings.memory_limit) == (1, 256)
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_the_output_keeps_the_settings_that_it_was_baked_with(room):
+    options = "--threshold 0.05 --minimum-size 0.1 --quality HIGH --method UNIFORM --bake-to ORIGINAL --seed 7"
+    assert main(["--output", "baked.blend", *options.split(), "--threads", "1", "--memory-limit", "256"]) == 0
+    opened("baked.blend")
+    assert bake_settings(bpy.context.scene.radiosity) == BakeSettings(
+        0.05, 0.1, "UNIFORM", "HIGH", "ORIGINAL", seed=7, threads=1, memory_limit=256
+    )
+    opened(room)
+    assert bake_settings(bpy.context.scene.radiosity) == BakeSettings()
 
 
 @pytest.mark.usefixtures("quick_bake")
