@@ -14,7 +14,7 @@ from . import refinement
 from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance, take_bright_patches
 from .clock import Clock
 from .cutting import IsHidden, cut_faces, cut_receivers, find_cuts
-from .detail import GatherAt, Lit, light_up, light_up_in_detail
+from .detail import FaceSizes, GatherAt, Lit, light_up, light_up_in_detail
 from .direct import strongest_emitters
 from .errors import NoLightError
 from .gather import Gathered, GatherRays, gather, hidden_receivers
@@ -65,6 +65,9 @@ BYTES_PER_VERTEX = 4096
 FINER_FACES = 8.0
 """Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
 
+FINER_CUTS = 4.0
+"""Times smaller still where the outline of another object crosses them."""
+
 WORKING_COPIES = 6
 """Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
 
@@ -110,7 +113,9 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 
     clock.start("Coarse patches", 0.02, 0.03)
     smallest = settings.minimum_size or automatic_size(surfaces, effort)
-    finest = smallest if settings.minimum_size or settings.method == "UNIFORM" else finest_size(surfaces, effort)
+    automatic = not settings.minimum_size and settings.method == "ADAPTIVE"
+    finest = finest_size(surfaces, effort) if automatic else smallest
+    finest_cut = finest / FINER_CUTS if automatic else smallest
     tree = coarse_patches(surfaces, smallest)
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
     per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
@@ -147,7 +152,8 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
         faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
     else:
-        shown = light_up_in_detail(surfaces, lit, tree, finest, effort.tolerance, most_vertices, gather_at, is_hidden)
+        sizes = FaceSizes(finest, finest_cut, most_vertices)
+        shown = light_up_in_detail(surfaces, lit, tree, sizes, effort.tolerance, gather_at, is_hidden)
         clock.start("Cutting", 0.95, 0.98)
         faces, face, irradiance = cut_where_hidden(gather_at, is_hidden, shown)
 

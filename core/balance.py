@@ -17,7 +17,7 @@ from .solve import Exchange, Solution
 from .surfaces import Surfaces
 from .transport import ESCAPED, Cover, Shares, Transport, element_normals, sample_points
 
-BRIGHT = 6.0
+BRIGHT = 10.0
 """Times the mean radiance of all patches above which one is sampled explicitly, as emitters are."""
 
 MOST_BRIGHT_PATCHES = 512

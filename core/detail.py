@@ -67,6 +67,25 @@ class Lit:
         )
 
 
+@dataclass(frozen=True)
+class FaceSizes:
+    """How far faces may be split.
+
+    Attributes
+    ----------
+    smallest : float, scene units
+        Only faces of twice this size or more are split.
+    smallest_cut : float, scene units
+        The same where the outline of another object crosses them.
+    most_vertices : int
+        Receivers after which no face is split any more.
+    """
+
+    smallest: float
+    smallest_cut: float
+    most_vertices: int
+
+
 GatherAt = Callable[[Receivers], Gathered]
 
 
@@ -81,9 +100,8 @@ def light_up_in_detail(
     surfaces: Surfaces,
     lit_sides: NDArray[np.bool_],
     tree: PatchTree,
-    smallest: float,
+    sizes: FaceSizes,
     tolerance: float,
-    most_vertices: int,
     gather_at: GatherAt,
     is_hidden: IsHidden,
 ) -> Lit:
@@ -94,29 +112,28 @@ def light_up_in_detail(
     lit_sides : (shells, 2) bool
     tree : PatchTree
         The patches to begin with; not changed.
-    smallest : float
-        Only faces of twice this size or more are split.
+    sizes : FaceSizes
     tolerance : float
         RMS error over the surface to be reached, relative to the mean.
-    most_vertices : int
-        Receivers after which no face is split any more.
     is_hidden : callable
         Tells whether receivers are hidden: faces that another object hides in part are split where it has a corner.
     """
     tree = tree.copy()
     known = light_up(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at)
-    for _ in range(MOST_ROUNDS):
-        nodes = _nodes_to_split(surfaces, known, tree, smallest, tolerance)
-        if len(nodes) == 0 or len(known.places.points) > most_vertices:
-            break
-        tree.split(nodes)
-        known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
-    for _ in range(MOST_ROUNDS):
-        nodes = _nodes_with_crooked_cuts(known, tree, smallest, is_hidden)
-        if len(nodes) == 0 or len(known.places.points) > most_vertices:
-            break
-        tree.split(nodes)
-        known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
+
+    def split_by_error(known: Lit) -> Ints:
+        return _nodes_to_split(surfaces, known, tree, sizes.smallest, tolerance)
+
+    def split_by_outline(known: Lit) -> Ints:
+        return _nodes_with_crooked_cuts(known, tree, sizes.smallest_cut, is_hidden)
+
+    for nodes_to_split in (split_by_error, split_by_outline):
+        for _ in range(MOST_ROUNDS):
+            nodes = nodes_to_split(known)
+            if len(nodes) == 0 or len(known.places.points) > sizes.most_vertices:
+                break
+            tree.split(nodes)
+            known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
     return known
 
 

@@ -18,9 +18,9 @@ NORMAL_CELLS = 1024
 """Shading normals closer than about 1/1024 count as one: corners of a smooth or flat surface share a value, corners on
 the two sides of a hard edge do not."""
 
-BORDER = 0.25
-"""A vertex is on a border when the mean way to the middles of its faces is this share of their mean distance; in the
-middle of even faces it is near 0, on a straight border about 0.5."""
+BORDER = 0.05
+"""A vertex lies inside its surface when the mean way to the middles of its faces is less than this share of their mean
+distance; on a straight border of even faces it is about 0.5, and still 0.1 where two slender ones meet."""
 
 INWARD = 0.02
 """Share of the way from a vertex towards the middle of its faces at which light is gathered: a vertex on the border of
