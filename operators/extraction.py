@@ -15,7 +15,8 @@ from .display import is_display
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
 from .materials import Surface, material_surface, world_radiance
 from .participants import Participants, shown_as_rendered
-from .record import BAKED_IN_PLACE, source_of
+from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
+from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, source_of
 
 _UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
 
@@ -33,6 +34,8 @@ class Target:
         Index into `Scene.meshes`.
     matrix : (4, 4) float
         From the object's space to the world's, when it was read.
+    shown : (4, 4) float
+        Where it was seen then: the transform of its refined object if it had one.
     flipped : bool
         Whether the triangles were turned over, because the matrix mirrors.
     local : LocalMesh
@@ -47,6 +50,7 @@ class Target:
     name: str
     mesh: int
     matrix: Floats
+    shown: Floats
     flipped: bool
     local: LocalMesh
     fingerprint: bytes
@@ -87,9 +91,14 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
     """
     warnings: list[str] = []
     wanted = _wanted(objects, warnings)
-    with shown_as_rendered(context) as (depsgraph, participants):
-        reader = _Reader(depsgraph, participants, set(wanted))
-        reader.read()
+    outputs = outputs_by_source()
+    view_layer = context.view_layer
+    with sources_shown(outputs), shown_as_rendered(context) as (depsgraph, participants):
+        reader = _Reader(depsgraph, participants, set(wanted), outputs)
+        with sources_in_place(outputs, view_layer):
+            reader.read()
+        warnings += _misplaced(reader.targets, outputs, view_layer)
+        warnings += _orphaned(participants.objects.difference(wanted), outputs)
     targets = tuple(reader.targets)
     warnings += _missing(wanted, reader)
     if not targets:
@@ -102,7 +111,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
         targets,
         tuple(warnings),
         context.scene.session_uid,
-        context.view_layer.name,
+        view_layer.name,
     )
 
 
@@ -131,6 +140,32 @@ def _missing(wanted: list[bpy.types.Object], reader: "_Reader") -> list[str]:
     return sentences
 
 
+def _misplaced(targets: list[Target], outputs: Outputs, view_layer: bpy.types.ViewLayer) -> list[str]:
+    """Return a sentence for each object whose refined object was moved to where it cannot go."""
+    sentences = []
+    shown = {output.radiosity.source.session_uid: output for (output, *others) in outputs.values() if not others}
+    for target in targets:
+        output = shown.get(target.uid)
+        if output is None or not shows_place(output) or not output.visible_get(view_layer=view_layer):
+            continue
+        if not same_place(output.matrix_world, target.matrix):
+            sentences.append(
+                f'"{output.name}" was moved, but "{target.name}" is where its animation or constraints put it; '
+                "it was baked there. Move the original instead"
+            )
+    return sentences
+
+
+def _orphaned(objects: Iterable[bpy.types.Object], outputs: Outputs) -> list[str]:
+    """Return a sentence for each original that shapes the light unseen, as what stood for it was deleted."""
+    return [
+        f'"{obj.name}" takes part in the light though its refined object was deleted; '
+        "Restore shows it again, then delete it if it shall be gone"
+        for obj in sorted(objects, key=lambda obj: obj.name_full)
+        if obj.radiosity.kind == HIDDEN_SOURCE and obj not in outputs
+    ]
+
+
 def _nothing(wanted: list[bpy.types.Object], warnings: list[str]) -> str:
     if not warnings:
         return "Select the meshes to bake"
@@ -141,11 +176,16 @@ class _Reader:
     """Goes once over everything that a dependency graph shows."""
 
     def __init__(
-        self, depsgraph: bpy.types.Depsgraph, participants: Participants, wanted: set[bpy.types.Object]
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        participants: Participants,
+        wanted: set[bpy.types.Object],
+        outputs: Outputs,
     ) -> None:
         self._depsgraph = depsgraph
         self._participants = participants
         self._wanted = wanted
+        self._outputs = outputs
         self._local_meshes: dict[int, LocalMesh | None] = {}
         self._surfaces: dict[Any, Surface] = {}
         self._users_of_note: dict[tuple[str, str], dict[str, None]] = {}
@@ -220,6 +260,7 @@ class _Reader:
                     name=original.name,
                     mesh=len(self.meshes),
                     matrix=matrix,
+                    shown=np.array(self._outputs.get(original, [original])[0].matrix_world),
                     flipped=bool(flipped),
                     local=local,
                     fingerprint=fingerprint(mesh),

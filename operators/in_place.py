@@ -115,6 +115,8 @@ def _show(obj: bpy.types.Object, both_sides: bool, journal: Journal) -> None:
     for index, slot in enumerate(obj.material_slots):
         if index >= len(record.slots):
             record.slots.add()
-        if not display.is_display(slot.material):
+        # A refined object whose original is gone shows a display material before its first bake in place.
+        unknown = not record.slots[index].link and not record.slot_added
+        if unknown or not display.is_display(slot.material):
             record.slots[index].material, record.slots[index].link = slot.material, slot.link
         journal.set(slot, "material", material)

@@ -35,7 +35,8 @@ class ObjectRecord(bpy.types.PropertyGroup):
     """The part an object plays in a bake, and its state before.
 
     `kind` says which of the other properties mean something: a hidden source has its visibility, a refined output its
-    source, an object that was baked in place its slots, attributes and, if its mesh was shared, that mesh.
+    source and where it was put, an object that was baked in place its slots, attributes and, if its mesh was shared,
+    that mesh.
     """
 
     kind: bpy.props.EnumProperty(
@@ -49,6 +50,7 @@ class ObjectRecord(bpy.types.PropertyGroup):
         override=_OVERRIDABLE,
     )
     source: bpy.props.PointerProperty(type=bpy.types.Object, override=_OVERRIDABLE)
+    place: bpy.props.FloatVectorProperty(size=16, override=_OVERRIDABLE)
     hide_render: bpy.props.BoolProperty(override=_OVERRIDABLE)
     hide_viewport: bpy.props.BoolProperty(override=_OVERRIDABLE)
     hide_eye: bpy.props.BoolProperty(override=_OVERRIDABLE)

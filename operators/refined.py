@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The refined mesh of a bake as an object of its own, in place of its hidden original."""
 
+import re
+
 import bpy
 import numpy as np
 from mathutils import Matrix
@@ -20,8 +22,10 @@ from .changes import (
 from .colours import write_colours
 from .extraction import Target
 from .journal import Journal
+from .places import remember_place
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
 
+_ADDED_TO_NAME = re.compile(r" Radiosity(\.\d+)?$")
 _FLAT_COSINE = 1.0 - 1e-6
 """A corner is flat when its normal is that of the triangle, to single precision (0.08 degrees)."""
 _LEAST_DETERMINANT = 1e-12
@@ -33,13 +37,18 @@ def store_refined(
 ) -> bpy.types.Object:
     """Make the refined object of `source`, show it and hide `source`; return it."""
     inverse = _inverse(target.matrix)
-    mesh = _refined_mesh(f"{source.name} Radiosity", target, baked, inverse, journal)
+    mesh = _refined_mesh(_output_name(source), target, baked, inverse, journal)
     _give_slots(mesh, source, target, baked, journal)
     output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
     for collection in source.users_collection:
         link(output, collection, journal)
     _take_place(source, output, view_layer, journal)
     return output
+
+
+def _output_name(source: bpy.types.Object) -> str:
+    """Return "Room Radiosity" for "Room", and for a refined object of that name whose own original is gone."""
+    return f"{_ADDED_TO_NAME.sub('', source.name)} Radiosity"
 
 
 def _inverse(matrix: Floats) -> Floats | None:
@@ -148,6 +157,8 @@ def _object_like(
         _reset_transform(output)
     output.radiosity.kind = REFINED_OUTPUT
     output.radiosity.source = source
+    if keep_transform:
+        remember_place(output)
     return output
 
 

@@ -5,12 +5,12 @@
 from collections.abc import Iterable
 
 import bpy
+from mathutils import Matrix
 
 from . import display
 from .changes import (
     clear_record,
     in_view_layer,
-    link,
     make_active,
     remember_active_attributes,
     remove_attribute,
@@ -20,6 +20,7 @@ from .changes import (
     set_eye,
 )
 from .journal import Journal
+from .places import follow, outputs_by_source, same_place, show_again, shows_place
 from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, is_output, source_of
 
 
@@ -48,22 +49,44 @@ class RADIOSITY_OT_restore(bpy.types.Operator):
     def execute(self, context):
         """Restore and say how many objects came back."""
         baked = baked_objects(context.selected_objects) or baked_objects(context.scene.objects)
+        baked = list(dict.fromkeys([*baked, *orphans(context.scene.objects)]))
+        shown = {obj: shown_place(obj) for obj in baked}
         restore(baked, context.view_layer)
+        context.view_layer.update()
+        elsewhere = [obj for obj in baked if shown[obj] is not None and not same_place(shown[obj], obj.matrix_world)]
         if not any(is_baked(obj) for obj in context.scene.objects):
             context.scene.radiosity.property_unset("report")
             display.show_as_before(context)
-        self.report({"INFO"}, f"Restored {len(baked)} {'object' if len(baked) == 1 else 'objects'}")
+        sentence = f"Restored {len(baked)} {'object' if len(baked) == 1 else 'objects'}"
+        if elsewhere:
+            names = ", ".join(f'"{obj.name}"' for obj in elsewhere)
+            sentence += f"; {names} went back to where its animation or constraints put it"
+        self.report({"WARNING" if elsewhere else "INFO"}, sentence)
         return {"FINISHED"}
 
 
 def is_baked(obj: bpy.types.Object) -> bool:
     """Return whether `obj` is part of a bake: a refined output, its hidden source, or baked in place."""
+    if obj.library is not None:
+        return False
     return is_output(obj) or obj.radiosity.kind in {HIDDEN_SOURCE, BAKED_IN_PLACE}
 
 
 def baked_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     """Return the originals of those of `objects` that are baked, each once."""
     return list(dict.fromkeys(source_of(obj) for obj in objects if is_baked(obj)))
+
+
+def orphans(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Return those of `objects` that are hidden behind a refined object which was deleted."""
+    outputs = outputs_by_source()
+    return [obj for obj in objects if is_baked(obj) and obj.radiosity.kind == HIDDEN_SOURCE and obj not in outputs]
+
+
+def shown_place(source: bpy.types.Object) -> Matrix | None:
+    """Return the transform at which the refined object of `source` is shown, or None if there is none."""
+    outputs = [obj for obj in outputs_of(source) if shows_place(obj)]
+    return outputs[0].matrix_world.copy() if len(outputs) == 1 and outputs[0].visible_get() else None
 
 
 def restore(objects: Iterable[bpy.types.Object], view_layer: bpy.types.ViewLayer) -> None:
@@ -95,10 +118,8 @@ def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
 def _restore_source(source, outputs, view_layer, journal: Journal) -> None:
     selected = bool(_selected(outputs, view_layer))
     active = view_layer.objects.active in outputs
-    for collection in {collection for output in outputs for collection in output.users_collection}:
-        # The source may have been deleted from the scene; only our pointer kept it.
-        if not source.users_collection:
-            link(source, collection, journal)
+    show_again(source, outputs, journal)
+    follow(source, outputs, journal)
     journal.on_failure(_select_again, view_layer, view_layer.objects.active, _selected(outputs, view_layer))
     for output in outputs:
         discard_output(output, journal)

@@ -3,7 +3,6 @@
 """The end of a bake: every baked object gets its values, all of them or none."""
 
 import bpy
-import numpy as np
 
 from ..core.errors import BakeError
 from ..core.result import BakeResult
@@ -11,9 +10,10 @@ from . import display
 from .extraction import Extraction, Target, fingerprint
 from .in_place import store_in_place
 from .journal import Journal
+from .places import same_place
 from .record import BAKED_IN_PLACE
 from .refined import store_refined
-from .restore import restore_object
+from .restore import outputs_of, restore_object
 
 
 class ChangedMeanwhileError(BakeError):
@@ -86,7 +86,7 @@ def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[
     found = []
     for target in targets:
         obj = by_uid.get(target.uid)
-        if obj is None or (obj not in shown and obj.users_scene == ()):
+        if obj is None or (obj not in shown and obj.users_scene == () and not outputs_of(obj)):
             raise ChangedMeanwhileError(f'"{target.name}" was deleted during the bake; nothing was stored')
         if obj.mode != "OBJECT":
             raise ChangedMeanwhileError(
@@ -103,7 +103,8 @@ def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[
 
 def _cautions(target: Target, obj: bpy.types.Object, output: str) -> list[str]:
     sentences = []
-    if not np.allclose(np.array(obj.matrix_world), target.matrix, rtol=1e-5, atol=1e-6):
+    shown = next(iter(outputs_of(obj)), obj)
+    if not same_place(shown.matrix_world, target.shown):
         sentences.append(f'"{obj.name}" was moved during the bake; its light is that of the place where it was')
     if output == "ORIGINAL" and not target.same_corners:
         sentences.append(

@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where refined objects are now: artists move what they see, and the hidden originals have to follow."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+
+from .changes import link
+from .journal import Journal
+from .record import is_output
+
+_PARENTING = ("parent", "parent_type", "parent_bone", "parent_vertices")
+_CHANNELS = (
+    "matrix_parent_inverse",
+    "rotation_mode",
+    "location",
+    "rotation_euler",
+    "rotation_quaternion",
+    "rotation_axis_angle",
+    "scale",
+    "delta_location",
+    "delta_rotation_euler",
+    "delta_rotation_quaternion",
+    "delta_scale",
+)
+
+
+def same_place(first: object, second: object) -> bool:
+    """Return whether two matrices are the same to single precision."""
+    return bool(np.allclose(np.array(first), np.array(second), rtol=1e-5, atol=1e-6))
+
+
+Outputs = Mapping[bpy.types.Object, list[bpy.types.Object]]
+"""The refined meshes that stand in a scene for each source."""
+
+
+def outputs_by_source() -> Outputs:
+    """Return the refined meshes that stand in a scene for each source: one, or more if the user duplicated it."""
+    found: dict[bpy.types.Object, list[bpy.types.Object]] = {}
+    for obj in bpy.data.objects:
+        if is_output(obj) and obj.users_scene:
+            found.setdefault(obj.radiosity.source, []).append(obj)
+    return found
+
+
+@contextmanager
+def sources_shown(outputs: Outputs) -> Iterator[None]:
+    """Have originals that were deleted from their scene back in it for a while."""
+    journal = Journal()
+    try:
+        for source, of_source in outputs.items():
+            show_again(source, of_source, journal)
+        yield
+    finally:
+        journal.take_back()
+
+
+@contextmanager
+def sources_in_place(outputs: Outputs, view_layer: bpy.types.ViewLayer) -> Iterator[None]:
+    """Have originals stand for a while where their refined objects are seen; they must be visible."""
+    journal = Journal()
+    try:
+        moved = [follow(source, of_source, journal) for source, of_source in outputs.items()]
+        if any(moved):
+            view_layer.update()
+        yield
+    finally:
+        journal.take_back()
+        if any(moved):
+            view_layer.update()
+
+
+def remember_place(output: bpy.types.Object) -> None:
+    """Remember where a new refined object is, to tell later whether it was moved."""
+    output.radiosity.place = np.array(output.matrix_basis).reshape(-1)
+
+
+def shows_place(output: bpy.types.Object) -> bool:
+    """Return whether a refined object has its original's transform; one that was flattened is in world space."""
+    return output.radiosity.is_property_set("place")
+
+
+def follow(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journal: Journal) -> bool:
+    """Give `source` the transform of its refined object, and the parent, if that was moved since the bake; say if so.
+
+    A copy that was moved away from a refined object which was not is no move. What is animated stays where the
+    animation puts it.
+    """
+    outputs = list(outputs)
+    if not outputs or not all(_was_moved(output, source) for output in outputs):
+        return False
+    if any(_is_animated(obj) for obj in (source, outputs[0])):
+        return False
+    before, now = _transform(source), _transform(outputs[0])
+    journal.on_failure(_set_transform, source, before)
+    _set_transform(source, now)
+    return True
+
+
+def show_again(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journal: Journal) -> None:
+    """Put `source` beside its refined objects if it was deleted from its scene; only our pointer kept it."""
+    if source.users_collection:
+        return
+    for collection in {collection for output in outputs for collection in output.users_collection}:
+        link(source, collection, journal)
+
+
+def _was_moved(output: bpy.types.Object, source: bpy.types.Object) -> bool:
+    if not shows_place(output):
+        return False
+    if output.parent != source.parent or not same_place(output.matrix_parent_inverse, source.matrix_parent_inverse):
+        return True
+    return not same_place(np.array(output.radiosity.place).reshape(4, 4), output.matrix_basis)
+
+
+def _is_animated(obj: bpy.types.Object) -> bool:
+    animation = obj.animation_data
+    return animation is not None and bool(animation.action or len(animation.drivers) or len(animation.nla_tracks))
+
+
+def _transform(obj: bpy.types.Object) -> dict[str, object]:
+    values = {name: getattr(obj, name) for name in (*_PARENTING, *_CHANNELS)}
+    # Blender hands out vectors and matrices that change with the object.
+    return {
+        name: value.copy() if hasattr(value, "copy") and name in _CHANNELS else value for name, value in values.items()
+    } | {name: tuple(values[name]) for name in ("parent_vertices", "rotation_axis_angle")}
+
+
+def _set_transform(obj: bpy.types.Object, values: dict[str, object]) -> None:
+    for name, value in values.items():
+        if getattr(obj, name) != value:
+            setattr(obj, name, value)
