@@ -90,7 +90,8 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
         When none of `objects` is a mesh with faces that renders.
     """
     warnings: list[str] = []
-    wanted = _wanted(objects, warnings)
+    skipped: dict[_Reason, list[str]] = {}
+    wanted = _wanted(objects, skipped)
     outputs = outputs_by_source()
     view_layer = context.view_layer
     with sources_shown(outputs), shown_as_rendered(context) as (depsgraph, participants):
@@ -100,9 +101,10 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
         warnings += _misplaced(reader.targets, outputs, view_layer)
         warnings += _orphaned(participants.objects.difference(wanted), outputs)
     targets = tuple(reader.targets)
-    warnings += _missing(wanted, reader)
+    _skip_missing(wanted, reader, skipped)
     if not targets:
-        raise NothingToBakeError(warnings[0] if len(warnings) == 1 else _nothing(wanted, warnings))
+        raise NothingToBakeError(_nothing(skipped))
+    warnings += [f'"{name}" was skipped: it {why.singular}' for why, names in skipped.items() for name in names]
     world, notes = world_radiance(context.scene.world)
     warnings += reader.warnings()
     warnings += [f'World "{context.scene.world.name}": {note}' for note in notes]
@@ -115,29 +117,48 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
     )
 
 
-def _wanted(objects: Iterable[bpy.types.Object], warnings: list[str]) -> list[bpy.types.Object]:
+@dataclass(frozen=True)
+class _Reason:
+    """Why an object cannot be baked, to follow "it" and several names."""
+
+    singular: str
+    plural: str
+
+
+_NOT_A_MESH = _Reason("is not a mesh", "are not meshes")
+_LINKED = _Reason(
+    "is linked from another file; make it local to bake it",
+    "are linked from another file; make them local to bake them",
+)
+_WITHOUT_FACES = _Reason("has no faces", "have no faces")
+_NOT_RENDERED = _Reason("is not shown in renders", "are not shown in renders")
+
+
+def _wanted(objects: Iterable[bpy.types.Object], skipped: dict[_Reason, list[str]]) -> list[bpy.types.Object]:
     wanted = []
     for obj in dict.fromkeys(source_of(obj) for obj in objects):
         if obj.type != "MESH":
-            warnings.append(f'"{obj.name}" was skipped: it is not a mesh')
+            skipped.setdefault(_NOT_A_MESH, []).append(obj.name)
         elif obj.library is not None:
-            warnings.append(f'"{obj.name}" was skipped: it is linked from another file; make it local to bake it')
+            skipped.setdefault(_LINKED, []).append(obj.name)
         else:
             wanted.append(obj)
     return wanted
 
 
-def _missing(wanted: list[bpy.types.Object], reader: "_Reader") -> list[str]:
+def _skip_missing(wanted: list[bpy.types.Object], reader: "_Reader", skipped: dict[_Reason, list[str]]) -> None:
     found = {target.uid for target in reader.targets}
-    sentences = []
     for obj in wanted:
-        if obj.session_uid in found:
-            continue
-        if obj in reader.without_faces:
-            sentences.append(f'"{obj.name}" was skipped: its mesh has no faces')
-        else:
-            sentences.append(f'"{obj.name}" was skipped: it is not shown in renders')
-    return sentences
+        if obj.session_uid not in found:
+            why = _WITHOUT_FACES if obj in reader.without_faces else _NOT_RENDERED
+            skipped.setdefault(why, []).append(obj.name)
+
+
+def _nothing(skipped: dict[_Reason, list[str]]) -> str:
+    if not skipped:
+        return "Select the meshes to bake"
+    clauses = [f"{_names(names)} {why.singular if len(names) == 1 else why.plural}" for why, names in skipped.items()]
+    return f"None of the selected objects can be baked: {', and '.join(clauses)}"
 
 
 def _misplaced(targets: list[Target], outputs: Outputs, view_layer: bpy.types.ViewLayer) -> list[str]:
@@ -164,12 +185,6 @@ def _orphaned(objects: Iterable[bpy.types.Object], outputs: Outputs) -> list[str
         for obj in sorted(objects, key=lambda obj: obj.name_full)
         if obj.radiosity.kind == HIDDEN_SOURCE and obj not in outputs
     ]
-
-
-def _nothing(wanted: list[bpy.types.Object], warnings: list[str]) -> str:
-    if not warnings:
-        return "Select the meshes to bake"
-    return f"Nothing to bake: {'; '.join(warnings)}"
 
 
 class _Reader:

@@ -98,9 +98,21 @@ def test_the_button_is_grey_when_all_selected_meshes_are_linked(tmp_path):
 def test_a_mesh_without_faces_is_an_error_with_its_name():
     add_mesh("Points", [(0, 0, 0)], [], select=True)
     before = file_state()
-    with pytest.raises(RuntimeError, match='"Points" was skipped: its mesh has no faces'):
+    with pytest.raises(RuntimeError, match=r'None of the selected objects can be baked: "Points" has no faces$'):
         bake()
     assert file_state() == before
+
+
+def test_a_selection_that_cannot_be_baked_is_one_sentence_about_the_whole():
+    for name in ("A", "B", "C", "D"):
+        add_cube(name, select=True).hide_render = True
+    add_mesh("Points", [(0, 0, 0)], [], select=True)
+    names = '"A", "B", "C" and 1 more'
+    with pytest.raises(RuntimeError) as caught:
+        bake()
+    assert str(caught.value).strip() == (
+        f'Error: None of the selected objects can be baked: {names} are not shown in renders, and "Points" has no faces'
+    )
 
 
 def test_a_scene_without_light_is_an_error_and_nothing_changes():
