@@ -116,6 +116,9 @@ class _ShaderReader:
         if output is None:
             return _surface()
         reflectance, emission = self._shader(_input(output, "Surface"), ())
+        if np.any(emission < 0.0):
+            self.notes.append("its emission is negative; it was taken for zero")
+            emission = np.maximum(emission, 0.0)
         return _surface(reflectance, emission, dict.fromkeys(self.notes))
 
     def _shader(self, socket, groups) -> tuple[Colour, Colour]:

@@ -201,3 +201,24 @@ def test_a_textured_world_is_left_dark_and_named():
     radiance, (note,) = world_radiance(world)
     assert radiance.tolist() == [0.0, 0.0, 0.0]
     assert "Environment Texture" in note and "dark" in note
+
+
+@pytest.mark.parametrize("strength", ["Strength", "Emission_Strength"])
+def test_a_negative_emission_counts_as_none_and_is_named(strength):
+    node = "ShaderNodeEmission" if strength == "Strength" else "ShaderNodeBsdfPrincipled"
+    colour = "Color" if strength == "Strength" else "Emission_Color"
+    material = node_material("Hole", node, **{strength: -2.0, colour: (1.0, 0.5, 0.0, 1.0)})
+    surface = material_surface(material)
+    assert surface.emission.tolist() == [0.0, 0.0, 0.0]
+    assert surface.notes == ("its emission is negative; it was taken for zero",)
+
+
+def test_a_world_of_negative_strength_is_left_dark_and_named():
+    world = bpy.data.worlds.new("Night")
+    tree = node_tree(world)
+    background = tree.nodes.new("ShaderNodeBackground")
+    background.inputs["Strength"].default_value = -1.0
+    link_surface(tree, background)
+    radiance, notes = world_radiance(world)
+    assert radiance.tolist() == [0.0, 0.0, 0.0]
+    assert notes == ("its emission is negative; the world was left dark",)
