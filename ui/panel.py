@@ -108,6 +108,9 @@ def _rows(report: dict) -> list[tuple[str, str]]:
     rows.append(("Time", f"{report['seconds']['total']:.1f} s"))
     if report.get("estimated_error") is not None:
         rows.append(("Estimated Error", f"{report['estimated_error']:.1%}"))
+    if "energy" in report:
+        accounted_for = 1.0 - abs(report["energy"]["imbalance"])
+        rows.append(("Energy Balance", f"{max(accounted_for, 0.0):.1%}"))
     return rows
 
 
