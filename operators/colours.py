@@ -27,7 +27,7 @@ def write_colours(mesh: bpy.types.Mesh, values: Mapping[str, Floats | None]) -> 
     Raises
     ------
     AttributeNameError
-        When a vertex group or such has one of the names.
+        When Blender refuses one of the names.
     """
     for name, colours in values.items():
         if colours is None:
@@ -40,7 +40,8 @@ def write_colours(mesh: bpy.types.Mesh, values: Mapping[str, Floats | None]) -> 
             if attribute is not None:
                 mesh.color_attributes.remove(attribute)
             raise AttributeNameError(
-                f'The mesh "{mesh.name}" has a vertex group named "{name}"; rename it, then bake again'
+                f'The mesh "{mesh.name}" cannot have a colour attribute "{name}"; '
+                "rename what has that name already, then bake again"
             )
         opaque = np.ones((len(colours), 4), dtype=np.float32)
         opaque[:, :3] = colours

@@ -15,13 +15,30 @@ from .changes import (
     remove_attribute,
     rename_attribute,
 )
-from .colours import write_colours
+from .colours import AttributeNameError, write_colours
 from .extraction import Target
 from .journal import Journal
 from .local_mesh import local_mesh
 from .record import BAKED_IN_PLACE
 from .refined import baked_values
 from .transfer import nearest_corners
+
+
+def check_names(obj: bpy.types.Object) -> None:
+    """Refuse an object whose vertex groups have names of ours; only attributes can be renamed for a while.
+
+    Modifiers find vertex groups by name.
+
+    Raises
+    ------
+    AttributeNameError
+    """
+    for name in display.ATTRIBUTES:
+        if name in obj.vertex_groups:
+            raise AttributeNameError(
+                f'"{obj.name}" has a vertex group named "{name}", as a baked attribute is named; '
+                "rename the vertex group, then bake again"
+            )
 
 
 def store_in_place(obj: bpy.types.Object, target: Target, baked: BakedMesh, journal: Journal) -> None:

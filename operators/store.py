@@ -8,7 +8,7 @@ from ..core.errors import BakeError
 from ..core.result import BakeResult
 from . import display
 from .extraction import Extraction, Target, fingerprint
-from .in_place import store_in_place
+from .in_place import check_names, store_in_place
 from .journal import Journal
 from .places import same_place
 from .record import BAKED_IN_PLACE
@@ -40,12 +40,15 @@ def store(
     ------
     ChangedMeanwhileError
         When an object was deleted, edited or is being edited; nothing is changed then.
+    AttributeNameError
+        See `check_storable`.
     """
     view_layer = scene.view_layers.get(extraction.view_layer)
     if view_layer is None:
         raise ChangedMeanwhileError(
             f'The view layer "{extraction.view_layer}" was removed or renamed during the bake; nothing was stored'
         )
+    check_storable(extraction, output)
     targets = {target.mesh: target for target in extraction.targets}
     pairs = [(targets[baked.mesh], baked) for baked in result.meshes]
     found = _find([target for target, _ in pairs], view_layer)
@@ -63,6 +66,22 @@ def store(
                 baked_objects.append(obj)
         journal.later(display.remove_unused_display_materials)
     return baked_objects, warnings
+
+
+def check_storable(extraction: Extraction, output: str) -> None:
+    """Refuse what could not be stored in the end, before time is spent on it.
+
+    Raises
+    ------
+    AttributeNameError
+        When an object that shall be baked in place has a vertex group with the name of one of our attributes.
+    """
+    if output != "ORIGINAL":
+        return
+    uids = {target.uid for target in extraction.targets}
+    for obj in bpy.data.objects:
+        if obj.session_uid in uids:
+            check_names(obj)
 
 
 def scene_of(extraction: Extraction) -> bpy.types.Scene:
@@ -88,11 +107,12 @@ def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[
         obj = by_uid.get(target.uid)
         if obj is None or (obj not in shown and obj.users_scene == () and not outputs_of(obj)):
             raise ChangedMeanwhileError(f'"{target.name}" was deleted during the bake; nothing was stored')
-        if obj.mode != "OBJECT":
-            raise ChangedMeanwhileError(
-                f'"{obj.name}" is in {obj.mode.replace("_", " ").lower()} mode; '
-                "nothing was stored. Leave the mode and bake again"
-            )
+        for replaced in (obj, *outputs_of(obj)):
+            if replaced.mode != "OBJECT":
+                raise ChangedMeanwhileError(
+                    f'"{replaced.name}" is in {replaced.mode.replace("_", " ").lower()} mode; '
+                    "nothing was stored. Leave the mode and bake again"
+                )
         if fingerprint(obj.data) != target.fingerprint:
             raise ChangedMeanwhileError(
                 f'The mesh of "{obj.name}" was edited during the bake; nothing was stored. Bake again'

@@ -105,7 +105,8 @@ def test_a_users_attribute_of_the_same_name_is_kept_aside():
     assert tuple(aside.data[0].color) == (1.0, 0.0, 0.0, 1.0)
 
 
-def test_a_vertex_group_of_the_same_name_is_a_sentence_and_nothing_changes():
+def test_a_vertex_group_of_the_same_name_is_a_sentence_before_anything_is_done(capfd, monkeypatch):
+    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: pytest.fail("the bake began"))
     cube = add_cube()
     cube.vertex_groups.new(name="Radiosity")
     cube.select_set(True)
@@ -114,6 +115,18 @@ def test_a_vertex_group_of_the_same_name_is_a_sentence_and_nothing_changes():
         bpy.ops.radiosity.bake()
     assert len(cube.data.color_attributes) == 0
     assert cube.radiosity.kind == "NONE"
+    assert "could not be created" not in "".join(capfd.readouterr())
+
+
+@pytest.mark.parametrize("name", ["Radiosity", "Irradiance"])
+def test_a_uv_map_of_the_same_name_is_kept_aside(name, capfd):
+    cube = add_cube()
+    cube.data.uv_layers.new(name=name)
+    bake(cube)
+    assert [layer.name for layer in cube.data.uv_layers] == [f"{name} (before bake)"]
+    bpy.ops.radiosity.restore()
+    assert [layer.name for layer in cube.data.uv_layers] == [name]
+    assert "could not be created" not in "".join(capfd.readouterr())
 
 
 def test_the_display_material_takes_all_slots_and_the_materials_are_kept():
