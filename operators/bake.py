@@ -18,7 +18,7 @@ from .extraction import Extraction, extract
 from .job import BakeJob, Failed, Finished
 from .record import source_of
 from .settings import bake_settings
-from .store import scene_of, store
+from .store import check_storable, scene_of, store
 
 _POLL_SECONDS = 0.1
 _PATIENCE_SECONDS = 0.3
@@ -42,6 +42,7 @@ def bake_objects(
     """
     began = time.perf_counter()
     extraction = extract(context, objects)
+    check_storable(extraction, settings.output)
     read = time.perf_counter() - began
     result = _core_bake()(extraction.scene, settings, progress)
     return finish(extraction, result, settings, read)
@@ -85,7 +86,7 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     if problem is not None:
         return problem
     if context.mode != "OBJECT":
-        return "Leave edit mode to bake" if "EDIT" in context.mode else "Switch to object mode to bake"
+        return f"{_way_to_object_mode(context)} to bake"
     if context.scene.library is not None:
         return "This scene is linked from another file; make it local to bake"
     meshes = [obj for obj in context.selected_objects if source_of(obj).type == "MESH"]
@@ -94,6 +95,10 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     if all(source_of(obj).library is not None for obj in meshes):
         return "The selected meshes are linked from another file; make them local to bake"
     return None
+
+
+def _way_to_object_mode(context: bpy.types.Context) -> str:
+    return "Leave edit mode" if "EDIT" in context.mode else "Switch to object mode"
 
 
 def counted(number: int, noun: str) -> str:
@@ -142,9 +147,11 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         try:
             self._settings = bake_settings(context.scene.radiosity)
             self._extraction = extract(context, context.selected_objects)
+            check_storable(self._extraction, self._settings.output)
         except BakeError as error:
             return self._gave_up(error)
         self._read = time.perf_counter() - began
+        self._outcome = None
         job = RADIOSITY_OT_bake.job = BakeJob(_core_bake(), self._extraction.scene, self._settings)
         window_manager = context.window_manager
         self._timer = window_manager.event_timer_add(_POLL_SECONDS, window=context.window)
@@ -167,16 +174,24 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
             return {"PASS_THROUGH"}
         messages = job.messages()
         if messages and not isinstance(messages[-1], Progress):
+            self._outcome = messages[-1]
+        if self._outcome is not None and not self._must_wait(context):
             self._leave(context)
-            return self._end(context, messages[-1])
+            return self._end(context, self._outcome)
+        if self._outcome is not None:
+            # Objects cannot be exchanged, nor the step of undo be made, in the middle of an edit.
+            job.latest = Progress(f"{_way_to_object_mode(context)} to finish the bake", 1.0)
         if messages:
-            self._show(context, messages[-1])
+            self._show(context, job.latest)
         return {"PASS_THROUGH"}
 
     def cancel(self, context):
         """Stop the bake when Blender ends the operator itself, as it does when another file is opened."""
         stop_running_job()
         self._leave(context)
+
+    def _must_wait(self, context) -> bool:
+        return isinstance(self._outcome, Finished) and context.mode != "OBJECT"
 
     def _end(self, context, message: Finished | Failed):
         try:

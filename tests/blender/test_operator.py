@@ -266,6 +266,10 @@ class Window:
         self.scene, self.view_layer = bpy.context.scene, bpy.context.view_layer
         self.selected_objects = bpy.context.selected_objects
 
+    @property
+    def mode(self):
+        return bpy.context.mode
+
     def evaluated_depsgraph_get(self):
         return bpy.context.evaluated_depsgraph_get()
 
@@ -337,6 +341,70 @@ def test_a_modal_bake_lets_other_events_pass_and_stores_at_its_end():
     assert_left(window)
     assert "Cube Radiosity" in bpy.data.objects
     assert operator.reports[-1][0] == "INFO"
+
+
+def until_it_waits(operator, window):
+    began = time.monotonic()
+    while "Leave edit mode to finish the bake" not in window.status:
+        assert operator.modal(window, TIMER) == {"PASS_THROUGH"}
+        assert time.monotonic() - began < 10.0
+        time.sleep(0.01)
+
+
+@pytest.mark.usefixtures("quick_bake")
+@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
+def test_a_bake_that_ends_in_edit_mode_is_stored_when_the_mode_is_left(output):
+    cube = add_cube(select=True)
+    bpy.context.scene.radiosity.output = output
+    operator, window = ModalBake(), Window()
+    operator.invoke(window, None)
+    bpy.ops.object.mode_set(mode="EDIT")
+    until_it_waits(operator, window)
+    assert operator.modal(window, TIMER) == operator.modal(window, MOUSE) == {"PASS_THROUGH"}
+    assert cube.radiosity.kind == "NONE"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert operator.modal(window, TIMER) == {"FINISHED"}
+    assert_left(window)
+    assert cube.radiosity.kind != "NONE"
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_a_bake_that_waits_for_the_end_of_edit_mode_can_be_cancelled():
+    cube = add_cube(select=True)
+    operator, window = ModalBake(), Window()
+    operator.invoke(window, None)
+    bpy.ops.object.mode_set(mode="EDIT")
+    until_it_waits(operator, window)
+    assert operator.modal(window, ESC) == {"CANCELLED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert_left(window)
+    assert cube.radiosity.kind == "NONE"
+
+
+def test_an_error_does_not_wait_for_the_end_of_edit_mode(monkeypatch):
+    def dark(scene, settings, progress):
+        raise NoLightError("Nothing in the scene emits light")
+
+    add_cube(select=True)
+    run_instead(monkeypatch, dark)
+    operator, window = ModalBake(), Window()
+    operator.invoke(window, None)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert until_it_ends(operator, window) == {"CANCELLED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert operator.reports == [("ERROR", "Nothing in the scene emits light")]
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_a_refined_object_that_is_edited_is_not_replaced(monkeypatch):
+    add_cube(select=True)
+    bake()
+    output = bpy.context.object
+    change_during_bake(monkeypatch, lambda: bpy.ops.object.mode_set(mode="EDIT"))
+    with pytest.raises(RuntimeError, match='"Cube Radiosity" is in edit mode; nothing was stored'):
+        bake()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert bpy.data.objects["Cube Radiosity"] == output
 
 
 def slow(scene, settings, progress):
