@@ -54,9 +54,9 @@ class Effort:
 
 
 EFFORTS = {
-    "DRAFT": Effort(4_000, 32, 0.04, GatherRays(64, 16, 32)),
-    "GOOD": Effort(16_000, 64, 0.01, GatherRays(384, 16, 96)),
-    "HIGH": Effort(64_000, 128, 0.005, GatherRays(1024, 32, 384)),
+    "DRAFT": Effort(4_000, 32, 0.04, GatherRays(64, 16, 32, 64, 0.06)),
+    "GOOD": Effort(16_000, 64, 0.01, GatherRays(384, 16, 96, 512, 0.02)),
+    "HIGH": Effort(64_000, 128, 0.005, GatherRays(1024, 32, 384, 1536, 0.01)),
 }
 
 BYTES_PER_VERTEX = 4096
@@ -139,7 +139,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 
     clock.start("Gathering", 0.5, 0.95)
     radiance = seen_radiance(transport, balance, solution, emitters)
-    bright, radiance = take_bright_patches(transport, cover, balance, solution, radiance)
+    bright, radiance = take_bright_patches(transport, balance, solution, radiance)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
 
     def gather_at(places: Receivers) -> Gathered:

@@ -154,7 +154,7 @@ def seen_radiance(transport: Transport, balance: Balance, solution: Solution, em
 
 
 def take_bright_patches(
-    transport: Transport, cover: Cover, balance: Balance, solution: Solution, radiance: Radiance
+    transport: Transport, balance: Balance, solution: Solution, radiance: Radiance
 ) -> tuple[Emitters, Radiance]:
     """Take the patches out of what rays look up that few rays would find, and much brighter than the rest.
 
@@ -167,7 +167,8 @@ def take_bright_patches(
     tree = transport.tree
     luminance = solution.reflected @ LUMINANCE
     mean = float((balance.areas * luminance).sum() / balance.areas.sum())
-    whole = (balance.elements == balance.base) & (cover.twin[balance.base] < 0) & (balance.buried == 0.0)
+    # What is buried or covered of a patch is out of sight for shadow rays too.
+    whole = balance.elements == balance.base
     weight = np.where(whole & (luminance > BRIGHT * mean), balance.areas * luminance**2, 0.0)
     count = min(int((weight > 0.0).sum()), MOST_BRIGHT_PATCHES)
     chosen = np.sort(np.argsort(-weight, kind="stable")[:count])

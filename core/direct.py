@@ -96,7 +96,7 @@ def direct_irradiance(
     shadow_rays: int,
     seed: int,
     neighbours: int = 1,
-) -> tuple[Floats, NDArray[np.bool_]]:
+) -> tuple[Floats, Floats]:
     """Direct irradiance over pi at points.
 
     Parameters
@@ -115,20 +115,20 @@ def direct_irradiance(
     Returns
     -------
     irradiance : (n, 3) float, W m^-2 sr^-1
-    penumbra : (n,) bool
-        Receivers that see some emitter in part.
+    uncertainty : (n,) float, W m^-2 sr^-1
+        Standard error of its luminance, were the rays independent: 0 where every emitter is seen whole or not at all.
     """
     total = np.zeros((len(points), 3))
-    penumbra = np.zeros(len(points), dtype=bool)
+    uncertainty = np.zeros(len(points))
     if len(emitters.triangle) == 0 or len(points) == 0:
-        return total, penumbra
+        return total, uncertainty
     size = neighbours * max(1, PAIRS_PER_BATCH // max(len(emitters.triangle), neighbours * shadow_rays))
     for first in range(0, len(points), size):
         part = slice(first, first + size)
-        total[part], penumbra[part] = _direct_part(
+        total[part], uncertainty[part] = _direct_part(
             emitters, rays, points[part], normals[part], lift[part], keys[part], shadow_rays, seed, neighbours
         )
-    return total, penumbra
+    return total, uncertainty
 
 
 def _direct_part(
@@ -141,7 +141,7 @@ def _direct_part(
     shadow_rays: int,
     seed: int,
     neighbours: int,
-) -> tuple[Floats, NDArray[np.bool_]]:
+) -> tuple[Floats, Floats]:
     together = points.reshape(-1, neighbours, 3)
     centre = together.mean(axis=1)
     spread = np.linalg.norm(together - centre[:, None], axis=2).max(axis=1)
@@ -149,9 +149,9 @@ def _direct_part(
     group = np.repeat(np.arange(len(centre)), neighbours)
     lit = np.flatnonzero(share.any(axis=1)[group])
     count = len(points)
-    irradiance, penumbra = np.zeros((count, 3)), np.zeros(count, dtype=bool)
+    irradiance, uncertainty = np.zeros((count, 3)), np.zeros(count)
     if len(lit) == 0:
-        return irradiance, penumbra
+        return irradiance, uncertainty
     points, normals, lift, group = points[lit], normals[lit], lift[lit], group[lit]
     shift = hashed(keys[lit], 3, seed)
     emitter = _systematic_draw(share, group, shadow_rays, shift[:, 2])
@@ -181,13 +181,14 @@ def _direct_part(
     factor = point_to_triangle(points[row], normals[row], emitters.corners[chosen])
     probability = np.ones(len(row)) if all_once else np.minimum(1.0, share[group[row], chosen] * drawn_rays)
     light = (factor * visible / probability)[:, None] * emitters.radiance[chosen]
+    light_of = factor * (emitters.radiance[chosen] @ LUMINANCE)
     for channel in range(3):
         irradiance[lit, channel] = np.bincount(row, weights=light[:, channel], minlength=len(lit))
-    partly = (visible > 0.0) & (visible < 1.0)
-    penumbra[lit] = np.bincount(row, weights=partly, minlength=len(lit)) > 0
-    # A draw that stands for many emitters is noisy even where each is fully seen or hidden.
-    penumbra[lit] |= np.bincount(row, weights=probability < 1.0, minlength=len(lit)) > 0
-    return irradiance, penumbra
+    # Of the visible share among the rays of an emitter, and of emitters drawn by chance.
+    rays_of = np.diff(np.append(starts, len(kernel)))
+    variance = (visible * (1.0 - visible) / rays_of + visible**2 * (1.0 - probability)) * (light_of / probability) ** 2
+    uncertainty[lit] = np.sqrt(np.bincount(row, weights=variance, minlength=len(lit)))
+    return irradiance, uncertainty
 
 
 def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, spread: Floats) -> Floats:

@@ -40,11 +40,17 @@ class GatherRays:
         Rays over all emitters.
     penumbra : int
         The same, again, for receivers that see an emitter in part.
+    deep : int
+        The same, again, where these still leave more than `tolerance`.
+    tolerance : float
+        Standard error of the direct light, relative to the mean light of all receivers.
     """
 
     hemisphere: int
     shadow: int
     penumbra: int
+    deep: int
+    tolerance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,8 +182,8 @@ def _direct(
     counts: GatherRays,
     report: Callable[[float], None],
 ) -> Floats:
-    def pass_over(chosen: Ints, rays: int, salt: int, low: float, high: float) -> tuple[Floats, NDArray[np.bool_]]:
-        def work(first: int, last: int) -> tuple[Floats, NDArray[np.bool_]]:
+    def pass_over(chosen: Ints, rays: int, salt: int, low: float, high: float) -> tuple[Floats, Floats]:
+        def work(first: int, last: int) -> tuple[Floats, Floats]:
             part = chosen[first:last]
             return direct_irradiance(
                 emitters,
@@ -192,15 +198,17 @@ def _direct(
 
         parts = transport.rays.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))
         if not parts:
-            return np.zeros((0, 3)), np.zeros(0, dtype=bool)
+            return np.zeros((0, 3)), np.zeros(0)
         return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
 
     everyone = np.arange(len(receivers.points))
     if len(emitters.triangle) == 0:
         return np.zeros((len(everyone), 3))
-    direct, penumbra = pass_over(everyone, counts.shadow, 201, 0.7, 0.8)
-    again = np.flatnonzero(penumbra)
-    direct[again], _ = pass_over(again, counts.penumbra, 202, 0.8, 1.0)
+    direct, uncertainty = pass_over(everyone, counts.shadow, 201, 0.7, 0.75)
+    again = np.flatnonzero(uncertainty > 0.0)
+    direct[again], uncertainty[again] = pass_over(again, counts.penumbra, 202, 0.75, 0.85)
+    deep = np.flatnonzero(uncertainty > counts.tolerance * float((direct @ LUMINANCE).mean()))
+    direct[deep], _ = pass_over(deep, counts.deep, 203, 0.85, 1.0)
     return direct
 
 
