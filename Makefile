@@ -17,7 +17,7 @@ zip: venv ## The extension, one zip a platform, in dist
 	@$(MAIN) -m tools.build
 
 demo: zip ## Bake the example rooms with the built zip and put the pictures beside path-traced ones, in out/demo
-	@$(MAIN) -m tools.demo
+	@$(MAIN) -m tools.demo $(ROOMS)
 
 test: venv ## Everything: formatting, lint, types, all tests, the zip in real Blender and its window
 	@$(MAIN) -m tools.run_tests

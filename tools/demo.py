@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bake the example rooms with the built zip and put the pictures beside path-traced ones (`make demo`).
+"""Bake the example rooms with the built zip and put the pictures beside path-traced ones (`make demo`, `make demo ROOMS=studio`).
 
 Everything lands in out/demo: for each room the .blend file, the baked .blend file, the bake's report, the two pictures,
 and both side by side.
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,9 @@ from .installed import linux_zip, run_with_installed
 from .rooms import ROOMS
 
 FOLDER = ROOT / "out" / "demo"
+DEMO_ROOMS = ("cornell_box", "paper_scene_1")
+"""What is made unless others are named; `studio` is larger and takes minutes."""
+
 CAPTION_HEIGHT = 28
 GAP = 8
 
@@ -71,11 +75,15 @@ def print_report(room: str, report: dict[str, Any]) -> None:
         print(f"  warning: {warning}")
 
 
-def main() -> int:
+def main(rooms: Sequence[str]) -> int:
+    unknown = [room for room in rooms if room not in ROOMS]
+    if unknown:
+        print(f"demo: there is no room {unknown[0]}; choose from {', '.join(ROOMS)}", file=sys.stderr)
+        return 2
     FOLDER.mkdir(parents=True, exist_ok=True)
     environment = present_environments()[-1]
     made = []
-    for room in ROOMS:
+    for room in rooms:
         print(f"{room}: path tracing, then baking ...", flush=True)
         arguments = [room, str(linux_zip(DIST)), str(FOLDER)]
         done = run_with_installed(environment, "tools.demo_room", arguments, capture=True)
@@ -92,4 +100,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:] or DEMO_ROOMS))
