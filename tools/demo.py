@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bake the example rooms with the built zip and put the pictures beside path-traced ones (`make demo`, `make demo ROOMS=studio`).
+"""Bake the example rooms with the built zip and put the pictures beside path-traced ones: `make demo [ROOMS=studio]`.
 
 Everything lands in out/demo: for each room the .blend file, the baked .blend file, the bake's report, the two pictures,
 and both side by side.
