@@ -190,7 +190,8 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
         "warnings": [
             *surfaces.warnings,
             *warnings,
-            *limit_warnings(rounds, solution, per_row, effort, balance_sheet, crowded),
+            *limit_warnings(rounds, solution, per_row, effort, crowded),
+            *imbalance_warnings(balance_sheet),
         ],
     }
     return BakeResult(meshes, told)
@@ -252,12 +253,7 @@ def cut_where_hidden(gather_at: GatherAt, is_hidden: IsHidden, shown: Lit) -> tu
 
 
 def limit_warnings(
-    rounds: refinement.Refinement,
-    solution: Solution,
-    rays_per_patch: int,
-    effort: Effort,
-    balance: dict[str, float],
-    crowded: bool,
+    rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort, crowded: bool
 ) -> list[str]:
     """Sentences on limits that the bake ran into."""
     warnings = []

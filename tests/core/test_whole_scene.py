@@ -77,6 +77,11 @@ def test_light_that_does_not_add_up_is_said():
     assert "24%" in sentence
 
 
+def test_the_report_says_when_light_does_not_add_up(size, monkeypatch):
+    monkeypatch.setattr("radiosity_bake.core.bake.LARGEST_IMBALANCE", -1.0)
+    assert any("unaccounted" in warning for warning in bake(room(), size).report["warnings"])
+
+
 def saddle(count: int = 9):
     """A smooth surface that is hollow one way and bulges the other, and the places of its inner vertices."""
     x, y = np.meshgrid(np.linspace(-1, 1, count), np.linspace(-1, 1, count), indexing="ij")
