@@ -24,12 +24,13 @@ from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
 from .result import BakeResult
+from .rows import BYTES_PER_RAY
 from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
 from .solve import Solution, solve_balance
 from .subdivision import Faces, input_faces
 from .surfaces import Surfaces, join
-from .transport import BYTES_PER_RAY, Transport
+from .transport import Transport
 from .visibility import RayScene
 
 

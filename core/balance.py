@@ -12,10 +12,11 @@ import numpy as np
 from .direct import LUMINANCE, Emitters, direct_irradiance
 from .errors import UnsolvableError
 from .gather import Radiance
+from .rows import ESCAPED, Cover, Shares
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
-from .transport import ESCAPED, Cover, Shares, Transport, element_normals, sample_points
+from .transport import Transport, element_normals, sample_points
 
 BRIGHT = 10.0
 """Times the mean radiance of all patches above which one is sampled explicitly, as emitters are."""

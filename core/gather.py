@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from .direct import LUMINANCE, Emitters, direct_irradiance
 from .receivers import Receivers
+from .rows import BURIED, COVER_GAP, ESCAPED
 from .sampling import Singles, frames, hemisphere_lattice
 from .scene import Floats, Ints
-from .transport import BURIED, COVER_GAP, ESCAPED, Transport
+from .transport import Transport
 from .visibility import OFFSET
 
 LEAST_COVERED_SHARE = 0.9

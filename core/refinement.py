@@ -9,8 +9,9 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from .rows import ESCAPED, Shares
 from .scene import Ints
-from .transport import ESCAPED, Shares, Transport
+from .transport import Transport
 
 MOST_APPEALS = 1
 """Times in a round that more rays are asked for, each time for the pair on which the split of a fragment now rests."""

@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import EFFORTS, bake
+from radiosity_bake.core.rows import BYTES_PER_RAY
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
-from radiosity_bake.core.transport import BYTES_PER_RAY
 
 from tests.core.building import (
     DARK,

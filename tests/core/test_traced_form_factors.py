@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from radiosity_bake.core.transport import ESCAPED
+from radiosity_bake.core.rows import ESCAPED
 
 from tests.core.building import areas, factor_matrix, fronts, hits_by_row, node_triangles, transport_of
 from tests.scenes import exact, oracle
