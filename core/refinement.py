@@ -13,9 +13,6 @@ from .rows import ESCAPED, Shares
 from .scene import Ints
 from .transport import Transport
 
-MOST_APPEALS = 1
-"""Times in a round that more rays are asked for, each time for the pair on which the split of a fragment now rests."""
-
 THRESHOLD_MET = "every form factor is below the threshold"
 SIZE_MET = "every fragment whose form factor is above the threshold is at the minimum size"
 UNIFORM_MET = "every fragment is at the minimum size"
@@ -154,17 +151,15 @@ def _flagged(
     splittable[leaves] = tree.sizes(leaves) >= 2.0 * smallest
     if not splittable.any():
         return np.zeros(0, dtype=np.int64), 0.0, 0
-    lengthened = 0
-    for appeal in range(MOST_APPEALS + 1):
-        shares = transport.shares_to(np.repeat(splittable, 2))
-        undecided = _undecided_receivers(transport, shares, threshold)
-        if len(undecided) == 0 or appeal == MOST_APPEALS:
-            break
+    wanted = np.repeat(splittable, 2)
+    shares = transport.shares_to(wanted)
+    undecided = _undecided_receivers(transport, shares, threshold)
+    if len(undecided):
         transport.lengthen(undecided, report)
         trace_all(transport, seeds, report)
-        lengthened += len(undecided)
+        shares = transport.shares_to(wanted)
     nodes = np.unique(shares.source[shares.share > threshold] >> 1)
-    return nodes, float(shares.share.max(initial=0.0)), lengthened
+    return nodes, float(shares.share.max(initial=0.0)), len(undecided)
 
 
 def _undecided_receivers(transport: Transport, shares: Shares, threshold: float) -> Ints:
