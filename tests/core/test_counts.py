@@ -80,6 +80,6 @@ def test_a_bake_costs_the_patches_vertices_and_rays_that_it_did(case):
         if abs(found[name] - expected[name]) > TOLERANCE * expected[name]
     ]
     assert not moved, (
-        f"The cost of '{case}' has changed. {'; '.join(moved)}. If that is meant, and the errors are as they should be, "
-        "write the new counts down: python -m tests.core.data.make_counts"
+        f"The cost of '{case}' has changed. {'; '.join(moved)}. If that is meant, and the errors are as they should "
+        "be, write the new counts down: python -m tests.core.data.make_counts"
     )
