@@ -33,13 +33,14 @@ else
 	@$(MAIN) -m tools.run_tests "blender py"
 endif
 
-bench: ## Compare with other programs: accuracy, seconds, charts
+# make bench BENCH="--scene statue --fresh" measures one scene, and the other programs again; --help tells more.
+bench: ## Compare with other programs: accuracy, seconds, charts, docs/performance.md
 	@$(PYTHON) -m tools.environments bench
-	@$(MAIN) -m bench
+	@$(MAIN) -m bench $(BENCH)
 
-compare: ## Adaptive against uniform subdivision at the same minimum size, as a table
+compare: ## The paper's table: adaptive against uniform subdivision at the same minimum size
 	@$(PYTHON) -m tools.environments bench
-	@$(MAIN) -m bench.compare
+	@$(MAIN) -m bench.compare $(COMPARE)
 
 lint: venv ## Formatting, lint and types, without changing anything
 	@$(MAIN) -m tools.run_tests lint

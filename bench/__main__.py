@@ -2,108 +2,137 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Error against time and vertices, ours and the peers', on several scenes: `python -m bench`.
 
-Writes `out/bench.json` after every measurement, and `out/bench.svg` and `.png` at the end.
+Writes `out/bench/SCENE.json` after every measurement, so that scenes can be measured one by one, and then, from all
+that are there, the charts in `out/images` and the page `out/performance.md`; of a whole run also those in `docs`. What
+peers took is remembered in `.cache`, and measured again with `--fresh`, as it should be for a page that is published.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from datetime import UTC, datetime
 from typing import Any
 
-from radiosity_bake.core.settings import METHODS, QUALITIES, BakeSettings
+from radiosity_bake.core.settings import QUALITIES, BakeSettings
 
-from . import peers
-from .accuracy import Accuracy, compare
-from .chart import draw
-from .machine import write_json
-from .measure import Judged, judged, measure
-from .scenes import SCENES
+from . import publish
+from .accuracy import compare
+from .machine import OUT, write_json
+from .measure import Judged, Measured, judged, measure
+from .methods import BENCH_SCENES, OURS, RULE, UNIFORM
+from .peers import runs_of
+from .remembered import answered
+from .scenes import SCENES, even_size
 
-DEFAULT_SCENES = ("cornell_box", "corridor", "furnished_room", "pillar_hall", "statue")
+PEERS = ("mitsuba", "radiance", "cycles")
 
-# Minimum size of the uniform mesh that Cycles bakes: fine enough that its noise, not the mesh, decides at first.
-CYCLES_SIZE = {"cornell_box": 0.02, "paper_scene_1": 0.1, "corridor": 0.1, "furnished_room": 0.1}
-CYCLES_SIZE |= {"pillar_hall": 0.4, "statue": 0.1}
+# Patches that a scene, cut evenly, has about at the minimum sizes of the two methods that take one.
+PATCHES = (1_000, 4_000, 16_000, 64_000)
 
 Entry = dict[str, Any]
 
 
-def entry(
-    case: Judged, method: str, setting: str, seconds: float, points: int, accuracy: Accuracy, **more: Any
-) -> Entry:
-    """Return one point of the chart as JSON holds it."""
+def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
+    """Yield our bakes: each quality as a user has it; uniform, and by the paper's rule alone, at several sizes.
+
+    With a minimum size given, faces are not made finer where the light changes, so the form factors alone decide.
+    """
+    measure(case, BakeSettings(quality="DRAFT"))  # the first bake of a process also pays for loading libraries
+    for quality in qualities:
+        yield baked(OURS, quality, measure(case, BakeSettings(quality=quality)))
+    for name, method in ((UNIFORM, "UNIFORM"), (RULE, "ADAPTIVE")):
+        for patches in PATCHES:
+            size = even_size(case.scene, patches)
+            yield baked(name, f"n = {size:.3g} m", measure(case, BakeSettings(method=method, minimum_size=size)))
+
+
+def baked(method: str, setting: str, measured: Measured) -> Entry:
+    """Return one of our bakes as JSON holds it."""
+    report = measured.report
     return {
-        "scene": case.name,
         "method": method,
         "setting": setting,
-        "seconds": seconds,
-        "points": points,
-        "accuracy": accuracy.as_json(),
-        **more,
+        **measured.cost.as_json(),
+        "points": report["vertices"],
+        "patches": report["patches"],
+        "rays": report["rays"],
+        "accuracy": measured.accuracy.as_json(),
+        "report": report,
     }
 
 
-def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
-    """Yield our bakes: both methods in each quality, the minimum size chosen by the quality."""
-    measure(case, BakeSettings(quality="DRAFT"))  # the first bake of a process also pays for loading libraries
-    for method in METHODS:
-        for quality in qualities:
-            m = measure(case, BakeSettings(method=method, quality=quality))
-            name = f"Radiosity Bake {method.lower()}"
-            yield entry(case, name, quality, m.seconds, m.report["vertices"], m.accuracy, report=m.report)
+def theirs(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Iterator[Entry]:
+    """Yield what the peers give at each of their settings, from disk where it is known and not asked `fresh`."""
+    for asked in runs_of(case, peers.__contains__):
+        known = answered(case, asked, run, fresh)
+        answer = known.answer
+        yield {
+            "method": asked.method,
+            "setting": asked.setting,
+            **answer.cost.as_json(),
+            "points": answer.points,
+            "accuracy": compare(case.scene, case.probes, answer.irradiance, case.reference).as_json(),
+            "run": known.run,
+        }
 
 
-def theirs(case: Judged, name: str, answers: Iterator[tuple[str, Callable[[], peers.Answer]]]) -> Iterator[Entry]:
-    """Yield what a peer gives at each of its settings."""
-    for setting, run in answers:
-        answer = run()
-        accuracy = compare(case.scene, case.probes, answer.irradiance, case.reference)
-        yield entry(case, name, setting, answer.seconds, answer.points, accuracy)
+def measure_scene(name: str, asked: argparse.Namespace, run: str) -> None:
+    """Measure everything on one scene, print it and write it as it comes."""
+    case = judged(name, asked.probes, asked.parts)
+    noise = compare(case.scene, case.probes, case.reference.irradiance, case.reference).reference_noise
+    about = {
+        "scene": name,
+        "run": run,
+        "triangles": sum(len(mesh.triangles) for mesh in case.scene.meshes),
+        "probes": len(case.probes),
+        "reference_samples": case.reference.samples,
+        "reference_noise": noise,
+    }
+    entries: list[Entry] = []
+    qualities, peers = tuple(asked.quality or QUALITIES), tuple(asked.peer or PEERS)
+    for each in (ours(case, qualities), theirs(case, peers, run, asked.fresh)):
+        for entry in each:
+            entries.append({"run": run, **entry})
+            print(line_of(name, entry), flush=True)
+            write_json(OUT / "bench" / f"{name}.json", {**about, "results": entries})
 
 
-def everything(case: Judged, asked: argparse.Namespace) -> Iterator[Entry]:
-    """Yield all measurements of one scene."""
-    yield from ours(case, tuple(asked.quality or QUALITIES))
-    if "mitsuba" in asked.peer:
-        runs = ((f"{n} samples", lambda n=n: peers.mitsuba(case, n)) for n in (16, 64, 256, 1024))
-        yield from theirs(case, "Mitsuba 3", iter(runs))
-    if "radiance" in asked.peer:
-        efforts = ((e.name, lambda e=e: peers.radiance(case, e)) for e in peers.RADIANCE_EFFORTS)
-        yield from theirs(case, "Radiance rtrace -I", iter(efforts))
-    if "cycles" in asked.peer and case.name in CYCLES_SIZE:
-        size = CYCLES_SIZE[case.name]
-        runs = ((f"{n} samples", lambda n=n: peers.cycles(case, n, size)) for n in (16, 64, 256))
-        yield from theirs(case, "Cycles bake to vertices", iter(runs))
+HEADER = f"{'scene':<15}{'method':<38}{'setting':<32}{'points':>8}{'seconds':>9}{'cpu':>8}{'others':>7}{'error':>8}"
+
+
+def line_of(scene: str, entry: Entry) -> str:
+    """Return one measurement as a line of the printed table."""
+    accuracy = entry["accuracy"]
+    line = f"{scene:<15}{entry['method']:<38}{entry['setting']:<32}{entry['points']:>8,}{entry['seconds']:>9.2f}"
+    return f"{line}{entry['processor_seconds']:>8.2f}{entry['others']:>7.0%}{accuracy['rms']:>8.2%}"
 
 
 def arguments() -> argparse.Namespace:
     """Return what the command line asks for."""
     parser = argparse.ArgumentParser(prog="python -m bench", description=__doc__.splitlines()[0])
-    parser.add_argument("--scene", action="append", choices=sorted(SCENES))
+    parser.add_argument("--scene", action="append", choices=sorted(SCENES), help="default: the five of the page")
     parser.add_argument("--quality", action="append", choices=QUALITIES)
-    parser.add_argument("--peer", action="append", choices=("mitsuba", "radiance", "cycles", "none"))
+    parser.add_argument("--peer", action="append", choices=(*PEERS, "none"), help="default: all")
+    parser.add_argument("--fresh", action="store_true", help="measure the peers too, even where they are known")
+    parser.add_argument("--publish", action="store_true", help="write docs/performance.md though not all was run")
     parser.add_argument("--probes", type=int, default=4000)
     parser.add_argument("--parts", type=int, default=0, help="of the reference, for a quick one: 0 takes what is due")
-    asked = parser.parse_args()
-    asked.peer = asked.peer or ["mitsuba", "radiance", "cycles"]
-    return asked
+    parser.add_argument("--page-only", action="store_true", help="measure nothing; draw what was measured")
+    return parser.parse_args()
 
 
 def main() -> None:
     """Measure, print, and draw."""
     asked = arguments()
-    entries: list[Entry] = []
-    print(f"{'scene':<16}{'method':<26}{'setting':>13}{'points':>9}{'seconds':>9}{'error':>8}{'lit':>8}{'bias':>8}")
-    for name in asked.scene or DEFAULT_SCENES:
-        case = judged(name, asked.probes, asked.parts)
-        for e in everything(case, asked):
-            entries.append(e)
-            a = e["accuracy"]
-            line = f"{name:<16}{e['method']:<26}{e['setting']:>13}{e['points']:>9,}{e['seconds']:>9.2f}"
-            print(f"{line}{a['rms']:>8.2%}{a['lit_rms']:>8.2%}{a['bias']:>8.2%}", flush=True)
-            write_json("bench", entries)
-    draw(entries)
+    run = datetime.now(UTC).isoformat(timespec="seconds")
+    if not asked.page_only:
+        print(HEADER, flush=True)
+        for name in asked.scene or BENCH_SCENES:
+            measure_scene(name, asked, run)
+    whole = not (asked.scene or asked.quality or asked.peer or asked.parts or asked.page_only)
+    for path in publish.write_all(OUT, docs=whole or asked.publish):
+        print(path)
 
 
 if __name__ == "__main__":

@@ -1,64 +1,136 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The chart: error against time and against vertices, a row for each scene."""
+"""The charts: error against time, error against vertices and time against patches for each scene; and one for all."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from .machine import OUT
+from .methods import COLOURS, OURS, RULE, UNIFORM
+from .results import Document, Entry, of_method, title
 
-COLOURS = {
-    "Radiosity Bake adaptive": "#c2410c",
-    "Radiosity Bake uniform": "#f59e0b",
-    "Mitsuba 3": "#2563eb",
-    "Radiance rtrace -I": "#15803d",
-    "Cycles bake to vertices": "#6b7280",
-}
+BAKES = (OURS, UNIFORM, RULE)
 
-AXES = (("seconds", "seconds"), ("points", "vertices, or points computed"))
+# Small enough for the repository, large enough to read.
+DOTS_PER_INCH = 80
 
 
-def draw(entries: list[dict[str, Any]], name: str = "bench") -> list[Path]:
-    """Draw what was measured to `out/<name>.svg` and `.png`, and return where.
+def draw_all(document: Document, folder: Path, kinds: Sequence[str] = ("svg", "png")) -> list[Path]:
+    """Draw both charts, `performance-all` and `performance`, into a folder; returns the files.
 
     Parameters
     ----------
-    entries : list of dict
-        With `scene`, `method`, `seconds`, `points` and `accuracy` (`rms`).
+    document : dict
+        What `results.collect` returns.
     """
-    import matplotlib
-
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = name
-    from matplotlib import pyplot
-
-    scenes = list(dict.fromkeys(e["scene"] for e in entries))
-    figure, rows = pyplot.subplots(len(scenes), 2, figsize=(10.0, 3.4 * len(scenes)), squeeze=False, sharey="row")
-    for row, scene in zip(rows, scenes, strict=True):
-        for axes, (key, label) in zip(row, AXES, strict=True):
-            _panel(axes, [e for e in entries if e["scene"] == scene], key)
-            axes.set_xlabel(label)
-        row[0].set_ylabel("relative RMS error, %")
-        row[0].set_title(scene.replace("_", " "), loc="left")
-    rows[0][0].legend(fontsize=8)
-    figure.tight_layout()
-    paths = [OUT / f"{name}.{kind}" for kind in ("svg", "png")]
-    for path in paths:
-        figure.savefig(path, dpi=110, metadata={"Date": None} if path.suffix == ".svg" else None)
-    pyplot.close(figure)
+    if not document["scenes"]:
+        return []
+    pyplot = _pyplot()
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for name, make in (("performance-all", every_chart), ("performance", one_chart)):
+        figure = make(pyplot, document["scenes"])
+        for kind in kinds:
+            path = folder / f"{name}.{kind}"
+            figure.savefig(path, dpi=DOTS_PER_INCH, metadata={"Date": None} if kind == "svg" else None)
+            paths.append(path)
+        pyplot.close(figure)
     return paths
 
 
-def _panel(axes: Any, entries: list[dict[str, Any]], key: str) -> None:
-    """Draw a line for each method."""
-    for method in dict.fromkeys(e["method"] for e in entries):
-        points = sorted((e[key], 100.0 * e["accuracy"]["rms"]) for e in entries if e["method"] == method)
-        axes.plot(*zip(*points, strict=True), "o-", markersize=4, label=method, color=COLOURS.get(method))
+def _pyplot() -> Any:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    # The same numbers give the same file.
+    matplotlib.rcParams["svg.hashsalt"] = "bench"
+    from matplotlib import pyplot
+
+    return pyplot
+
+
+def every_chart(pyplot: Any, scenes: Sequence[Document]) -> Any:
+    """Return a figure with a row for each scene and a column for each question."""
+    figure, rows = pyplot.subplots(len(scenes), 3, figsize=(15.0, 3.9 * len(scenes)), squeeze=False)
+    for row, scene in zip(rows, scenes, strict=True):
+        error_against(row[0], scene, "seconds", "seconds", tuple(COLOURS))
+        error_against(row[1], scene, "points", "vertices, or points computed", tuple(COLOURS))
+        time_against_patches(row[2], scene)
+        row[0].set_title(title(scene["scene"]), loc="left", fontweight="bold")
+    legend(figure, rows[0][0])
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 - 0.55 / figure.get_figheight()))
+    return figure
+
+
+def one_chart(pyplot: Any, scenes: Sequence[Document]) -> Any:
+    """Return the figure of error against time, a panel for each scene."""
+    columns = min(len(scenes), 3)
+    rows = -(-len(scenes) // columns)
+    figure, panels = pyplot.subplots(rows, columns, figsize=(4.3 * columns, 3.5 * rows + 0.8), squeeze=False)
+    flat = panels.ravel()
+    for axes, scene in zip(flat, scenes, strict=False):
+        error_against(axes, scene, "seconds", "seconds", tuple(COLOURS))
+        axes.set_title(title(scene["scene"]), loc="left", fontweight="bold")
+    for axes in flat[len(scenes) :]:
+        axes.axis("off")
+    handles, labels = flat[0].get_legend_handles_labels()
+    if len(flat) > len(scenes):
+        flat[-1].legend(handles, labels, loc="center left", frameon=False)
+    else:
+        legend(figure, flat[0])
+    figure.tight_layout()
+    return figure
+
+
+def legend(figure: Any, axes: Any) -> None:
+    """Put the lines' names above all panels."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper center", ncols=4, frameon=False)
+
+
+def error_against(axes: Any, scene: Document, key: str, label: str, methods: Sequence[str]) -> None:
+    """Draw the error of each method against a cost."""
+    for method in methods:
+        points = sorted((e[key], 100.0 * e["rms"]) for e in of_method(scene, method))
+        draw_line(axes, method, points)
+    axes.set_xlabel(label)
+    axes.set_ylabel("relative RMS error, %")
+    finish(axes)
+
+
+def time_against_patches(axes: Any, scene: Document) -> None:
+    """Draw the time of our bakes against their patches, and a line along which time grows as patches do."""
+    entries = [entry for method in BAKES for entry in of_method(scene, method)]
+    for method in BAKES:
+        draw_line(axes, method, sorted((e["patches"], e["seconds"]) for e in of_method(scene, method)))
+    if entries:
+        few, many = (pick(e["patches"] for e in entries) for pick in (min, max))
+        start = min(entries, key=lambda e: e["patches"])["seconds"]
+        axes.plot((few, many), (start, start * many / few), ":", color="#9ca3af", zorder=0)
+    axes.set_xlabel("patches (dotted: in proportion)")
+    axes.set_ylabel("seconds")
+    finish(axes)
+
+
+def draw_line(axes: Any, method: str, points: list[tuple[float, float]]) -> None:
+    """Draw one method, ours on top and thicker."""
+    if points:
+        own = method == OURS
+        options: Entry = {"markersize": 6 if own else 4, "linewidth": 2.5 if own else 1.3, "zorder": 3 if own else 2}
+        axes.plot(*zip(*points, strict=True), "o-", label=method, color=COLOURS[method], **options)
+
+
+def finish(axes: Any) -> None:
+    """Make both axes logarithmic, with plain numbers."""
     axes.set_xscale("log")
     axes.set_yscale("log")
-    for kind in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
-        kind(lambda value, _: f"{value:g}")
-    axes.tick_params(axis="y", which="minor", labelsize=7)
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = axis.get_view_interval()
+        axis.set_major_formatter(lambda value, _: f"{value:g}")
+        # Only where few decades are shown there is room for numbers between them.
+        between = high / low < 30.0
+        axis.set_minor_formatter(lambda value, _, between=between: f"{value:g}" if between else "")
+    axes.tick_params(which="minor", labelsize=7)
     axes.grid(visible=True, which="both", alpha=0.25)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a number was measured on."""
+"""What a number was measured on, and where results are written."""
 
 from __future__ import annotations
 
@@ -19,13 +19,18 @@ PACKAGES = ("numpy", "embreex", "mitsuba", "drjit", "bpy", "pyradiance")
 
 def machine() -> dict[str, Any]:
     """Return processor, cores, system and the versions of what takes part, as JSON can hold it."""
-    versions = {"python": platform.python_version()}
+    return {"processor": processor(), "cores": os.cpu_count(), "system": platform.system(), "versions": versions()}
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that take part and are installed."""
+    found = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
-            versions[name] = version(name)
+            found[name] = version(name)
         except PackageNotFoundError:
             continue
-    return {"processor": processor(), "cores": os.cpu_count(), "system": platform.system(), "versions": versions}
+    return found
 
 
 def processor() -> str:
@@ -38,9 +43,7 @@ def processor() -> str:
     return platform.processor() or platform.machine()
 
 
-def write_json(name: str, content: Any) -> Path:
-    """Write `content` with the machine's description to `out/<name>.json`, and return where."""
-    OUT.mkdir(exist_ok=True)
-    path = OUT / f"{name}.json"
-    path.write_text(json.dumps({"machine": machine(), "results": content}, indent=1) + "\n")
-    return path
+def write_json(path: Path, content: Any) -> None:
+    """Write `content` with the machine's description."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"machine": machine(), **content}, indent=1) + "\n", encoding="utf-8")

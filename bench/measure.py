@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.result import BakeResult
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
 
@@ -17,6 +17,7 @@ from .accuracy import Accuracy, compare, irradiance_at_probes
 from .probes import Probes, area_uniform_probes
 from .reference import Reference, converged
 from .scenes import SCENES
+from .stopwatch import Cost, timed
 
 REFERENCE_PARTS = {
     "cornell_box": 2,
@@ -25,7 +26,7 @@ REFERENCE_PARTS = {
     "paper_scene_2": 5,
     "paper_scene_3": 5,
     "corridor": 4,
-    "furnished_room": 2,
+    "furnished_room": 4,
     "pillar_hall": 7,
 }
 """Parts of the reference that bring its noise below 0.5% RMS; `python -m bench.references` prints it."""
@@ -50,19 +51,17 @@ class Measured:
 
     Attributes
     ----------
-    seconds : float
-        Wall clock of `core.bake.bake`, everything included.
+    cost : Cost
+        Of `core.bake.bake`, everything included.
     report : dict
         The bake's own.
+    result : BakeResult
     """
 
-    seconds: float
+    cost: Cost
     report: dict[str, Any]
     accuracy: Accuracy
-
-    def as_json(self) -> dict[str, Any]:
-        """Return what JSON can hold."""
-        return {"seconds": self.seconds, "report": self.report, "accuracy": self.accuracy.as_json()}
+    result: BakeResult
 
 
 @cache
@@ -82,12 +81,8 @@ def judged(name: str, probes: int = 4000, parts: int = 0) -> Judged:
     return Judged(name, scene, points, truth)
 
 
-def measure(case: Judged, settings: BakeSettings, repeat: int = 1) -> Measured:
-    """Bake, and compare; the shortest of `repeat` times counts, as anything longer is the machine's doing."""
-    seconds = []
-    for _ in range(repeat):
-        start = time.perf_counter()
-        result = bake(case.scene, settings)
-        seconds.append(time.perf_counter() - start)
+def measure(case: Judged, settings: BakeSettings) -> Measured:
+    """Bake, and compare."""
+    result, cost = timed(lambda: bake(case.scene, settings))
     values = irradiance_at_probes(result, case.probes)
-    return Measured(min(seconds), result.report, compare(case.scene, case.probes, values, case.reference))
+    return Measured(cost, result.report, compare(case.scene, case.probes, values, case.reference), result)

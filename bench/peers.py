@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Other programs on the same scenes and probes: Mitsuba 3, Radiance `rtrace -I`, Cycles' bake to vertices.
 
-Mitsuba and Radiance compute at the probes themselves, so they have no interpolation error and as many points as there
-are probes; both favour them. Cycles bakes the vertices of a uniform subdivision, and the probes interpolate it, as they
-do for us.
+At the probes: Mitsuba and Radiance compute at the probes themselves, so they have no interpolation error and as many
+points as there are probes; both favour them. To vertices: Mitsuba and Cycles compute the vertices of a uniform mesh,
+and the probes interpolate it, as they do for us.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +29,20 @@ from tools.package import ROOT
 from . import reference
 from .accuracy import irradiance_at_probes
 from .measure import Judged
+from .scenes import even_size
+from .stopwatch import Cost, Instant, timed
 
 BOUNCES = 64
+
+# Patches of the uniform meshes whose vertices are computed, about: coarse and fine.
+COARSE, FINE = 4_000, 16_000
+
+# Samples of all vertices together above which Cycles is not asked: it would take minutes.
+MOST_CYCLES_SAMPLES = 5_000_000
+
+# A vertex is moved by this share of the way towards the middle of its triangles: on a border, in the plane of the next
+# wall, rays would pass behind that wall, and at a cut it must lie on its own side. A tenth of it is too little there.
+INWARD = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,15 +53,25 @@ class Answer:
     ----------
     irradiance : (n, 3) float, W m^-2 sr^-1
         Irradiance over pi at the probes.
-    seconds : float
-        Wall clock of computing, without starting the program where it can be told apart.
+    cost : Cost
+        Of computing, without starting the program where it can be told apart.
     points : int
         Places that were computed: probes, or vertices of a mesh.
     """
 
     irradiance: Floats
-    seconds: float
+    cost: Cost
     points: int
+
+
+@dataclass(frozen=True)
+class Run:
+    """A program at one of its settings, ready to be run."""
+
+    peer: str
+    method: str
+    setting: str
+    answer: Callable[[Judged], Answer]
 
 
 # ---------------------------------------------------------------------------------------------------------- Mitsuba
@@ -57,15 +80,28 @@ class Answer:
 def mitsuba(case: Judged, samples: int) -> Answer:
     """Path tracing from each probe, lamps sampled at every bounce; kernels are compiled before the clock runs."""
     p = case.probes
+    irradiance, cost = _path_traced(case.scene, p.position, p.normal, p.shading_normal, samples)
+    return Answer(irradiance, cost, len(p))
 
+
+def mitsuba_to_vertices(case: Judged, samples: int, patches: int) -> Answer:
+    """The same at the vertices of a uniform mesh, interpolated at the probes: a bake to vertices with Mitsuba."""
+    mesh = uniform_mesh(case.name, patches)
+    points = np.concatenate([part.inner_vertices for part in mesh.split.values()])
+    normals = np.concatenate([part.normals for part in mesh.split.values()])
+    irradiance, cost = _path_traced(case.scene, points, normals, normals, samples)
+    ends = np.cumsum([len(part.vertices) for part in mesh.split.values()])
+    values = dict(zip(mesh.split, np.split(irradiance, ends[:-1]), strict=True))
+    return Answer(mesh.at_probes(case, values), cost, mesh.points)
+
+
+def _path_traced(scene: Scene, points: Floats, normals: Floats, shading: Floats, samples: int) -> tuple[Floats, Cost]:
     def run() -> reference.Reference:
-        return reference.irradiance(
-            case.scene, p.position, p.normal, p.shading_normal, samples=samples, passes=1, seed=1, cache=False
-        )
+        return reference.irradiance(scene, points, normals, shading, samples=samples, passes=1, seed=1, cache=False)
 
     run()
-    found = run()
-    return Answer(found.irradiance, found.seconds, len(p))
+    found, cost = timed(run)
+    return found.irradiance, cost
 
 
 # --------------------------------------------------------------------------------------------------------- Radiance
@@ -88,6 +124,9 @@ RADIANCE_EFFORTS = (
     RadianceEffort("high", 0.15, 512, 128, 128),
 )
 
+# Without it, each of `rtrace`'s processes makes a cache of its own, and two take as long as one.
+AMBIENT_FILE = "ambient"
+
 # Ambient bounces: each costs a level of the cache, and 0.7^8 is 6%, of which little is left where light is even.
 RADIANCE_BOUNCES = 8
 
@@ -107,39 +146,30 @@ def radiance(case: Judged, effort: RadianceEffort) -> Answer:
     with tempfile.TemporaryDirectory() as folder:
         scene, octree = Path(folder) / "scene.rad", Path(folder) / "scene.oct"
         scene.write_text(radiance_scene(case.scene))
-        start = time.perf_counter()
-        with octree.open("wb") as file:
-            subprocess.run(
-                [str(programs / "bin" / "oconv"), "-w", scene.name],
-                cwd=folder,
-                stdout=file,
-                env=environment,
-                check=True,
-            )
-        command = [
-            str(programs / "bin" / "rtrace"),
-            "-I+",
-            "-h",
-            "-w",
-            "-fff",
-            "-n",
-            str(os.cpu_count()),
-            "-ab",
-            str(RADIANCE_BOUNCES),
-        ]
-        command += ["-aa", str(effort.accuracy), "-ad", str(effort.divisions), "-as", str(effort.super_samples)]
-        command += ["-ar", str(effort.resolution), "-ds", "0.05", "-dj", "0.7", "-dt", "0", "-dc", "1", "-lw", "1e-5"]
-        done = subprocess.run(
-            [*command, octree.name],
-            cwd=folder,
-            input=rows.tobytes(),
-            stdout=subprocess.PIPE,
-            env=environment,
-            check=True,
-        )
-        seconds = time.perf_counter() - start
-    values = np.frombuffer(done.stdout, dtype=np.float32).reshape(len(p), 3)
-    return Answer(values / np.pi, seconds, len(p))
+
+        def run() -> bytes:
+            (Path(folder) / AMBIENT_FILE).unlink(missing_ok=True)
+            with octree.open("wb") as file:
+                command = [str(programs / "bin" / "oconv"), "-w", scene.name]
+                subprocess.run(command, cwd=folder, stdout=file, env=environment, check=True)
+            command = [str(programs / "bin" / "rtrace"), *radiance_options(effort), octree.name]
+            given = rows.tobytes()
+            return subprocess.run(
+                command, cwd=folder, input=given, stdout=subprocess.PIPE, env=environment, check=True
+            ).stdout
+
+        output, cost = timed(run)
+    values = np.frombuffer(output, dtype=np.float32).reshape(len(p), 3)
+    return Answer(values / np.pi, cost, len(p))
+
+
+def radiance_options(effort: RadianceEffort) -> list[str]:
+    """Return the options of `rtrace`: irradiance, on all cores, with no sample of a light left out."""
+    options = ["-I+", "-h", "-w", "-fff", "-n", str(os.cpu_count()), "-af", AMBIENT_FILE]
+    options += ["-ab", str(RADIANCE_BOUNCES)]
+    options += ["-aa", str(effort.accuracy), "-ad", str(effort.divisions), "-as", str(effort.super_samples)]
+    options += ["-ar", str(effort.resolution), "-ds", "0.05", "-dj", "0.7", "-dt", "0", "-dc", "1"]
+    return [*options, "-lw", "1e-5"]
 
 
 def radiance_scene(scene: Scene) -> str:
@@ -171,74 +201,159 @@ def _radiance_material(name: str, rho: Floats, light: Floats) -> str:
 # ----------------------------------------------------------------------------------------------------------- Cycles
 
 
-def cycles(case: Judged, samples: int, minimum_size: float) -> Answer:
-    """Bake to the vertices of our uniform subdivision, with 64 bounces and no clamping, and interpolate at the probes.
+def cycles(case: Judged, samples: int, patches: int) -> Answer:
+    """Bake to the vertices of a uniform mesh, with 64 bounces and no clamping, and interpolate at the probes.
 
-    Runs in a process of its own; the clock is that of `bpy.ops.object.bake` alone. Vertices are split where normals
-    differ, as a vertex on a hard edge would be of one side only.
+    Runs in a process of its own; the clock is that of `bpy.ops.object.bake` alone.
     """
-    mesh_of, split = subdivided(case.scene, minimum_size)
+    mesh = uniform_mesh(case.name, patches)
     with tempfile.TemporaryDirectory() as folder:
         given, answered = Path(folder) / "scene.npz", Path(folder) / "baked.npz"
         arrays: dict[str, np.ndarray] = {"samples": np.array(samples), "bounces": np.array(BOUNCES)}
         arrays["world"] = case.scene.world
-        for k, mesh in enumerate(case.scene.meshes):
-            part = split.get(k)
-            vertices, triangles = (part.vertices, part.triangles) if part else (mesh.vertices, mesh.triangles)
-            parent = part.parent if part else np.arange(len(mesh.triangles))
+        for k, original in enumerate(case.scene.meshes):
+            part = mesh.split.get(k)
+            vertices, triangles = (part.vertices, part.triangles) if part else (original.vertices, original.triangles)
+            parent = part.parent if part else np.arange(len(original.triangles))
             arrays[f"vertices_{k}"], arrays[f"triangles_{k}"] = vertices, triangles
-            arrays[f"reflectance_{k}"], arrays[f"emission_{k}"] = mesh.reflectance[parent], mesh.emission[parent]
+            arrays[f"reflectance_{k}"] = original.reflectance[parent]
+            arrays[f"emission_{k}"] = original.emission[parent]
             arrays[f"baked_{k}"] = np.array(part is not None)
             arrays[f"smooth_{k}"] = np.array(part is not None and part.smooth)
         np.savez(given, **arrays)
         script = Path(__file__).with_name("cycles_bake.py")
-        subprocess.run(
-            [sys.executable, str(script), str(given), str(answered)], cwd=ROOT, check=True, stdout=subprocess.DEVNULL
-        )
+        command = [sys.executable, str(script), str(given), str(answered)]
+        start = Instant.now()
+        subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+        whole = start.cost_until(Instant.now())
         with np.load(answered) as found:
-            seconds = float(found["seconds"])
-            colours = {k: found[f"irradiance_{k}"] for k in split}
-    meshes = tuple(_with_irradiance(mesh_of[k], colours[k][split[k].triangles]) for k in split)
-    values = irradiance_at_probes(BakeResult(meshes, {}), case.probes)
-    return Answer(values, seconds, sum(len(part.vertices) for part in split.values()))
+            cost = Cost(float(found["seconds"]), float(found["processor_seconds"]), whole.others)
+            colours = {k: found[f"irradiance_{k}"] for k in mesh.split}
+    return Answer(mesh.at_probes(case, colours), cost, mesh.points)
+
+
+# ----------------------------------------------------------------------------------------------------- uniform meshes
 
 
 @dataclass(frozen=True, eq=False)
 class SplitMesh:
-    """A baked mesh's triangles with a vertex for each pair of place and normal."""
+    """A baked mesh's triangles with a vertex for each place, normal and light: one for each side of an edge or a cut.
+
+    Attributes
+    ----------
+    vertices, inner_vertices, normals : (v, 3) float
+        As they are, moved in by `INWARD`, and the shading normals.
+    triangles : (t, 3) int
+    parent : (t,) int
+        The input's triangle of each.
+    smooth : bool
+    """
 
     vertices: Floats
+    inner_vertices: Floats
+    normals: Floats
     triangles: Ints
     parent: Ints
     smooth: bool
 
 
-def subdivided(scene: Scene, minimum_size: float) -> tuple[dict[int, BakedMesh], dict[int, SplitMesh]]:
-    """Return our uniform subdivision of each baked mesh, as we store it and with split vertices, by mesh index."""
-    settings = BakeSettings(method="UNIFORM", minimum_size=minimum_size, quality="DRAFT")
+@dataclass(frozen=True, eq=False)
+class UniformMesh:
+    """A scene's uniform subdivision by index of the mesh, as we store it and with split vertices."""
+
+    baked: dict[int, BakedMesh]
+    split: dict[int, SplitMesh]
+
+    @property
+    def points(self) -> int:
+        """Vertices of all split meshes."""
+        return sum(len(part.vertices) for part in self.split.values())
+
+    def at_probes(self, case: Judged, values: dict[int, Floats]) -> Floats:
+        """Return values at the split vertices of each mesh interpolated at the probes, (n, 3)."""
+        meshes = []
+        for k, baked in self.baked.items():
+            corners = values[k][self.split[k].triangles]
+            meshes.append(replace(baked, radiosity=corners, irradiance=corners))
+        return irradiance_at_probes(BakeResult(tuple(meshes), {}), case.probes)
+
+
+@cache
+def uniform_mesh(name: str, patches: int) -> UniformMesh:
+    """Return the uniform subdivision of a scene of `SCENES` into about so many patches, meshes that only emit left out.
+
+    As ours, it is cut where an object stands on it, which a plain grid is not: that favours those who use it.
+    """
+    from .scenes import SCENES
+
+    scene = SCENES[name]()
+    settings = BakeSettings(method="UNIFORM", minimum_size=even_size(scene, patches), quality="DRAFT")
     baked, split = {}, {}
     for mesh in bake(scene, settings).meshes:
         original = scene.meshes[mesh.mesh]
         if np.all(np.any(original.emission > 0.0, axis=1)):
             continue
-        corners = mesh.triangles.ravel()
-        key = np.column_stack([corners, np.round(mesh.corner_normals.reshape(-1, 3) * 1e3)])
-        _, first, index = np.unique(key, axis=0, return_index=True, return_inverse=True)
-        flat = np.allclose(mesh.corner_normals, mesh.corner_normals[:, :1], atol=1e-6)
-        triangles = index.reshape(-1, 3)
-        baked[mesh.mesh] = mesh
-        split[mesh.mesh] = SplitMesh(mesh.vertices[corners[first]], triangles, mesh.parent_triangle, not flat)
-    return baked, split
+        baked[mesh.mesh], split[mesh.mesh] = mesh, split_mesh(mesh)
+    return UniformMesh(baked, split)
 
 
-def _with_irradiance(mesh: BakedMesh, irradiance: Floats) -> BakedMesh:
-    return BakedMesh(
-        mesh.mesh,
-        mesh.vertices,
-        mesh.triangles,
-        mesh.parent_triangle,
-        mesh.barycentric,
-        mesh.corner_normals,
-        irradiance,
-        irradiance,
+def split_mesh(mesh: BakedMesh) -> SplitMesh:
+    """Return the mesh with a vertex for each place, normal and light.
+
+    Corners that are one receiver of ours have the very same light; those before and behind a block's foot have not.
+    """
+    corners = mesh.triangles.ravel()
+    key = np.column_stack([corners, np.round(mesh.corner_normals.reshape(-1, 3) * 1e3), mesh.irradiance.reshape(-1, 3)])
+    _, first, index = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    triangles = index.reshape(-1, 3)
+    vertices = mesh.vertices[corners[first]]
+    middles = np.repeat(mesh.vertices[mesh.triangles].mean(axis=1), 3, axis=0)
+    around = np.bincount(index.ravel(), minlength=len(first))[:, None]
+    middle = np.stack([np.bincount(index.ravel(), weights=middles[:, k]) for k in range(3)], axis=1) / around
+    return SplitMesh(
+        vertices=vertices,
+        inner_vertices=vertices + INWARD * (middle - vertices),
+        normals=mesh.corner_normals.reshape(-1, 3)[first],
+        triangles=triangles,
+        parent=mesh.parent_triangle,
+        smooth=not np.allclose(mesh.corner_normals, mesh.corner_normals[:, :1], atol=1e-6),
     )
+
+
+# ------------------------------------------------------------------------------------------------------------ all runs
+
+
+def runs_of(case: Judged, wanted: Callable[[str], bool]) -> list[Run]:
+    """Return the runs of the peers whose names are wanted: mitsuba, radiance, cycles."""
+    runs: list[Run] = []
+    if wanted("mitsuba"):
+        runs += [
+            Run("mitsuba", "Mitsuba 3 at the probes", f"{n} samples", lambda c, n=n: mitsuba(c, n))
+            for n in (16, 64, 256, 1024)
+        ]
+        runs += [
+            Run(
+                "mitsuba",
+                "Mitsuba 3 to vertices",
+                f"{n} samples, about {p} patches",
+                lambda c, n=n, p=p: mitsuba_to_vertices(c, n, p),
+            )
+            for p, n in ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256), (FINE, 1024))
+        ]
+    if wanted("radiance"):
+        runs += [
+            Run("radiance", "Radiance rtrace -I at the probes", e.name, lambda c, e=e: radiance(c, e))
+            for e in RADIANCE_EFFORTS
+        ]
+    if wanted("cycles"):
+        runs += [
+            Run(
+                "cycles",
+                "Cycles bake to vertices",
+                f"{n} samples, about {p} patches",
+                lambda c, n=n, p=p: cycles(c, n, p),
+            )
+            for p, n in ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256), (FINE, 512))
+            if n * uniform_mesh(case.name, p).points <= MOST_CYCLES_SAMPLES
+        ]
+    return runs

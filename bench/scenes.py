@@ -39,6 +39,15 @@ def scene_of(surfaces: Sequence[rooms.Surface]) -> Scene:
     return Scene(tuple(mesh_of(s) for s in surfaces), DARKNESS)
 
 
+def even_size(scene: Scene, patches: int) -> float:
+    """Return the minimum size at which a scene, cut evenly, has about so many patches: equation (17) of the theory."""
+    area = 0.0
+    for mesh in scene.meshes:
+        a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+        area += 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return math.sqrt(4.0 * area / patches) / math.sqrt(2.0)
+
+
 # ------------------------------------------------------------------------------------------------- building blocks
 
 

@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The benchmark's arithmetic and its page: time at equal error, and a text for whatever numbers there are."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from bench.convergence import cost_at, improving
+from bench.page import page
+from bench.results import collect
+
+
+def test_only_settings_that_no_cheaper_one_beats_count():
+    assert improving([(4.0, 0.02), (1.0, 0.05), (2.0, 0.06), (8.0, 0.02)]) == [(1.0, 0.05), (4.0, 0.02)]
+
+
+def test_time_at_equal_error_lies_on_the_line_between_two_settings():
+    # Error as one over the square root of time: 1% lies where time is four times that of 2%.
+    found = cost_at([(1.0, 0.04), (16.0, 0.01)], 0.02)
+    assert found.kind == "between"
+    assert found.cost == pytest.approx(4.0)
+
+
+def test_beyond_the_best_setting_the_error_falls_as_one_over_the_square_root():
+    found = cost_at([(1.0, 0.04), (16.0, 0.02)], 0.01)
+    assert found.kind == "beyond"
+    assert found.cost == pytest.approx(64.0)
+
+
+def test_an_error_above_that_of_the_cheapest_setting_costs_at_most_that():
+    assert cost_at([(3.0, 0.04), (16.0, 0.02)], 0.1) == cost_at([(3.0, 0.04)], 0.04)
+    assert cost_at([(3.0, 0.04)], 0.1).kind == "below"
+    assert cost_at([], 0.1) is None
+
+
+def entry(method: str, setting: str, seconds: float, rms: float, points: int = 1000, run: str = "2026-01-01") -> dict:
+    """Return a measurement as the benchmark writes it."""
+    stages = {"form_factors": 0.6 * seconds, "gathering": 0.4 * seconds, "total": seconds}
+    return {
+        "method": method,
+        "setting": setting,
+        "seconds": seconds,
+        "processor_seconds": 2.0 * seconds,
+        "others": 0.0,
+        "points": points,
+        "patches": points,
+        "rays": 64 * points,
+        "run": run,
+        "accuracy": {"rms": rms, "lit_rms": rms, "bias": -rms / 10, "p95": 2 * rms},
+        "report": {"estimated_error": 2 * rms, "seconds_in_ray_library": seconds, "seconds": stages},
+    }
+
+
+def measured(folder, *results: dict) -> dict:
+    """Return the document of one scene that was measured."""
+    versions = {"python": "3.13", "numpy": "2"}
+    scene = {
+        "machine": {"processor": "A processor", "cores": 2, "system": "Linux", "versions": versions},
+        "scene": "cornell_box",
+        "run": "2026-01-01",
+        "triangles": 38,
+        "probes": 4000,
+        "reference_samples": 16384,
+        "reference_noise": 0.004,
+        "results": list(results),
+    }
+    (folder / "bench").mkdir(exist_ok=True)
+    (folder / "bench" / "cornell_box.json").write_text(json.dumps(scene))
+    return collect(folder)
+
+
+def test_a_page_without_measurements_says_so(tmp_path):
+    assert "Nothing has been measured" in page(collect(tmp_path))
+
+
+def test_the_page_states_how_many_times_faster_and_whether_that_is_the_goal(tmp_path):
+    peer = [
+        entry("Mitsuba 3 at the probes", "64 samples", 10.0, 0.02),
+        entry("Mitsuba 3 at the probes", "16", 2.5, 0.04),
+    ]
+    text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.02), *peer))
+    # At 2% Mitsuba takes 10 s, ours 1 s: 10 times, where 20 are wanted on this scene.
+    assert "| Cornell box, GOOD | 2.00% | 1.00 | 10 (10) of 20 |" in text
+    assert (
+        "| 20 times faster than Mitsuba 3 at the probes on the Cornell box, at the error of GOOD | 10 (Cornell box)"
+        in text
+    )
+    text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 0.25, 0.02), *peer))
+    assert "| Cornell box, GOOD | 2.00% | 0.25 | 40 (40) |" in text
+
+
+def test_the_page_says_when_the_machine_was_busy_and_when_peers_are_of_another_run(tmp_path):
+    disturbed = {**entry("Radiosity Bake", "GOOD", 1.0, 0.02), "others": 0.5}
+    text = page(measured(tmp_path, disturbed, entry("Cycles bake to vertices", "16", 9.0, 0.1, run="2025-12-24")))
+    assert "up to 50% of its processors" in text
+    assert "peers partly 2025-12-24" in text
+    text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.02)))
+    assert "busy" not in text.partition("## Goals")[0]
+    assert "all in one run" in text
+
+
+def test_an_exact_bake_does_not_break_the_page(tmp_path):
+    text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.0)))
+    assert "0.00%" in text
