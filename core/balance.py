@@ -11,7 +11,6 @@ import numpy as np
 
 from .direct import LUMINANCE, Emitters, direct_irradiance
 from .errors import UnsolvableError
-from .gather import Radiance
 from .rows import ESCAPED, Cover, Shares
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
@@ -95,11 +94,11 @@ def exchange_of(receiver: Ints, source: Ints, factor: Floats) -> Exchange:
     return Exchange(receiver[start], start, source, factor.astype(np.float32))
 
 
-def explicit_emission(transport: Transport, balance: Balance, emitters: Emitters) -> Floats:
-    """The emission of elements that is left to rays: zero where the emitter is sampled explicitly, (m, 3)."""
-    explicit = np.zeros(len(transport.surfaces.triangles), dtype=bool)
-    explicit[emitters.triangle] = True
-    return np.where(explicit[transport.tree.triangle[balance.base >> 1]][:, None], 0.0, balance.emission)
+def left_emission(surfaces: Surfaces, emitters: Emitters) -> Floats:
+    """The emission of triangles that is left to rays: zero where the emitter is sampled explicitly, (triangles, 3)."""
+    emission = surfaces.emission.copy()
+    emission[emitters.triangle] = 0.0
+    return emission
 
 
 def direct_on_patches(
@@ -120,7 +119,8 @@ def direct_on_patches(
         light = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
         for rows, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
             direct[number[rows]] = (light * chosen[..., None]).sum(axis=1) / chosen.sum(axis=1)[:, None]
-    by_rays = balance.exchange.apply(explicit_emission(transport, balance, emitters))
+    left = left_emission(transport.surfaces, emitters)
+    by_rays = balance.exchange.apply(left[transport.tree.triangle[balance.base >> 1]])
     return direct + by_rays + balance.escape[:, None] * transport.surfaces.world
 
 
@@ -147,23 +147,29 @@ def _direct_at(
     return np.concatenate([np.zeros((0, count, 3)), *parts])
 
 
-def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Radiance:
-    """What gather rays see on each element: reflected light, and emission that is not sampled explicitly."""
+def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Floats:
+    """What gather rays see on each element and twin: reflected light, and emission that is not sampled explicitly."""
     values = np.zeros((max(2 * len(transport.tree), int(balance.elements.max(initial=0)) + 1), 3))
-    values[balance.elements] = solution.reflected + explicit_emission(transport, balance, emitters)
-    return Radiance.of(values, transport.surfaces.world)
+    left = left_emission(transport.surfaces, emitters)
+    values[balance.elements] = solution.reflected + left[transport.tree.triangle[balance.base >> 1]]
+    return values
 
 
-def take_bright_patches(
-    transport: Transport, balance: Balance, solution: Solution, radiance: Radiance
-) -> tuple[Emitters, Radiance]:
-    """Take the patches out of what rays look up that few rays would find, and much brighter than the rest.
+def bright_patches(
+    transport: Transport, balance: Balance, solution: Solution, radiance: Floats
+) -> tuple[Emitters, Ints]:
+    """Patches that few rays would find, and much brighter than the rest, to be sampled as lights instead.
 
     The ceiling above a lamp is a lamp itself: left to chance, it would streak whatever it lights.
 
+    Parameters
+    ----------
+    radiance : (elements, 3) float
+        What gather rays would see on each.
+
     Returns
     -------
-    The patches as emitters of one side, and the radiance without them.
+    The patches as emitters of one side, and their elements.
     """
     tree = transport.tree
     luminance = solution.reflected @ LUMINANCE
@@ -174,16 +180,14 @@ def take_bright_patches(
     count = min(int((weight > 0.0).sum()), MOST_BRIGHT_PATCHES)
     chosen = np.sort(np.argsort(-weight, kind="stable")[:count])
     elements = balance.elements[chosen]
-    values = radiance.values.copy()
-    values[elements] = 0.0
     return Emitters(
         np.full(count, -1, dtype=np.int64),
         tree.points[tree.corners[elements >> 1]],
         element_normals(transport.surfaces, tree, elements),
         balance.areas[chosen],
-        radiance.values[elements].astype(np.float64),
+        radiance[elements],
         np.ones(count, dtype=bool),
-    ), Radiance(values)
+    ), elements
 
 
 def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:

@@ -174,13 +174,14 @@ class Transport:
         found = self.rays.first_hits(origins, directions)
         missed = found.triangle < 0
         triangle = np.maximum(found.triangle, 0)
-        root = self.locator.coarse(triangle, found.weights)
-        element = 2 * self.locator.leaves(root, found.weights) + found.back
+        weights = found.weights()
+        root = self.locator.coarse(triangle, weights)
+        element = 2 * self.locator.leaves(root, weights) + found.back
         if self.cover is not None:
             self.cover.tell_apart(element, found.distance)
         element[self.unlit_side[2 * triangle + found.back]] = BURIED
         element[missed] = ESCAPED
-        return element, root, found.weights, found.distance
+        return element, root, weights, found.distance
 
     def follow_splits(self) -> int:
         """Drop the rows of patches that were split, and move the rays that met one to the child they met.
