@@ -196,7 +196,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     if shown.gathered.places.shape[1] and settings.output == "REFINED":
         left = left_emission(surfaces, emitters)
         fixed = np.isin(cells.element, shining)
-        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, seen[cells.element], fixed)
+        partly = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
+        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, seen[cells.element], fixed, partly)
         for _ in range(LOOKS):
             radiance = Radiance.of(cells, interpolated.at(shown), surfaces.world)
             shown = replace(shown, gathered=look_again(transport, radiance, shown.gathered))

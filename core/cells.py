@@ -61,6 +61,7 @@ class Cells:
         The coarse patch of each cell.
     centre : (cells, 2) float32
         Barycentric weights of corners 1 and 2 in it.
+    areas : (cells,) float
     element : (2 * cells + twins + copies,) int
         The element, or twin, that each place lies on.
     unlit : (2 * cells + twins + copies,) bool
@@ -94,6 +95,9 @@ class Cells:
             chosen = roots[along == side]
             index = self._first[chosen][:, None] + np.arange(side**2)
             self.centre[index] = _centres(int(side))
+        a, b, c = (tree.points[tree.corners[roots, k]] for k in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+        self.areas: Floats = np.repeat(area / cells, cells)
         leaf, _ = tree.descend(self.node, self.centre)
         element = (2 * leaf[:, None] + np.arange(2)).ravel()
         twin = cover.twin[element]

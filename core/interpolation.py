@@ -23,6 +23,9 @@ STEEP = 1.0
 """Difference between a face's corners, relative to their mean, above which a face that is a whole patch shows the
 patch's own radiosity: what was gathered at three points says less of its mean than rays from all over it."""
 
+MOST_CORRECTED = 0.1
+"""Share by which the light at the vertices is made to agree with the patches' power at most."""
+
 
 class InterpolatedRadiance:
     """Radiance of each place from the irradiance at the vertices around it.
@@ -37,6 +40,8 @@ class InterpolatedRadiance:
         What places show that lie on no face: meshes that are not baked, twins of covered elements.
     keep : (places,) bool
         Places that keep it as well.
+    partly : (places,) bool
+        Places on elements that are covered or inside a solid in part, whose radiosity is that of the rest.
     """
 
     def __init__(
@@ -47,6 +52,7 @@ class InterpolatedRadiance:
         emission: Floats,
         solved: Floats,
         keep: NDArray[np.bool_],
+        partly: NDArray[np.bool_],
     ) -> None:
         self._tree, self._solved, self._copied = tree, solved, cells.copied
         leaf, weights = tree.descend(cells.node, cells.centre)
@@ -54,6 +60,8 @@ class InterpolatedRadiance:
         cell = self._place >> 1
         self._side = 2 * leaf[cell] + (self._place & 1)
         self._whole = leaf[cell] == cells.element[self._place] >> 1
+        self._areas = cells.areas[cell]
+        self._open = ~partly[self._place]
         u, v = weights[cell, 0], weights[cell, 1]
         self._shares = [np.asarray(share, dtype=np.float32)[:, None] for share in (1.0 - u - v, u, v)]
         triangle = tree.triangle[leaf[cell]]
@@ -69,12 +77,27 @@ class InterpolatedRadiance:
             steep = np.ptp(light, axis=1) > STEEP * light.mean(axis=1)
         known = np.isfinite(irradiance[:, 0]) & ~(self._whole & steep[self._side])
         result = self._solved.copy()
-        result[self._place[known]] = (self._emission + self._reflectance * irradiance)[known]
+        reflected = self._reflectance * irradiance
+        reflected *= self._balanced(reflected, known)
+        result[self._place[known]] = (self._emission + reflected)[known]
         lit = np.zeros(len(result), dtype=bool)
         lit[self._place[known]] = True
         copies = len(result) - len(self._copied) + np.flatnonzero(lit[self._copied])
         result[copies] = result[self._copied[lit[self._copied]]]
         return result
+
+    def _balanced(self, reflected: NDArray[np.float32], known: NDArray[np.bool_]) -> Floats:
+        """What reflected light is to be multiplied by for as much power as the patches reflect, (3,).
+
+        Straight lines between vertices cut the tops off: the faces tell how light is spread, the patches how much
+        there is of it.
+        """
+        counted = known & self._open
+        solved = self._solved[self._place[counted]] - self._emission[counted]
+        power, drawn = (self._areas[counted] @ light for light in (solved, reflected[counted].astype(np.float64)))
+        ratio = np.divide(power, drawn, out=np.ones(3), where=drawn > 0.0)
+        corrected: Floats = np.clip(ratio, 1.0 - MOST_CORRECTED, 1.0 + MOST_CORRECTED)
+        return corrected
 
 
 def corner_irradiance_of_nodes(tree: PatchTree, shown: Lit) -> NDArray[np.float32]:
