@@ -4,27 +4,38 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from contextlib import closing
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import refinement
-from .balance import balance_of, check_solved, direct_on_patches, energy, seen_radiance, take_bright_patches
+from .balance import (
+    balance_of,
+    bright_patches,
+    check_solved,
+    direct_on_patches,
+    energy,
+    left_emission,
+    seen_radiance,
+)
+from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import IsHidden, cut_faces, cut_receivers, find_cuts
 from .detail import FaceSizes, GatherAt, Lit, light_up, light_up_in_detail
 from .direct import strongest_emitters
 from .errors import NoLightError
-from .gather import Gathered, GatherRays, gather, hidden_receivers
+from .gather import Gathered, GatherRays, gather, hidden_receivers, look_again
+from .interpolation import InterpolatedRadiance
 from .output import baked_meshes
-from .patches import clustered_patches
+from .patches import PatchTree, coarse_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
 from .result import BakeResult
-from .rows import BYTES_PER_RAY
+from .rows import BYTES_PER_RAY, COVER_GAP
 from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
 from .solve import Solution, solve_balance
@@ -55,15 +66,15 @@ class Effort:
 
 
 EFFORTS = {
-    "DRAFT": Effort(4_000, 32, 0.04, GatherRays(64, 16, 32, 64, 0.06)),
-    "GOOD": Effort(16_000, 64, 0.01, GatherRays(384, 16, 96, 512, 0.02)),
-    "HIGH": Effort(64_000, 128, 0.005, GatherRays(1024, 32, 384, 1536, 0.01)),
+    "DRAFT": Effort(2_000, 32, 0.04, GatherRays(64, 16, 32, 64, 0.06)),
+    "GOOD": Effort(4_000, 64, 0.012, GatherRays(256, 16, 96, 512, 0.02)),
+    "HIGH": Effort(16_000, 128, 0.005, GatherRays(768, 32, 384, 1536, 0.01)),
 }
 
 BYTES_PER_VERTEX = 4096
 """Of the receivers, faces and values of a vertex, with the working copies made of them."""
 
-FINER_FACES = 8.0
+FINER_FACES = 16.0
 """Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
 
 FINER_CUTS = 4.0
@@ -72,7 +83,17 @@ FINER_CUTS = 4.0
 WORKING_COPIES = 6
 """Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
 
-RAYS_TO_FIND_CUTS = 64
+CELLS_ALONG_PATCH = 4.0
+"""Cells along the edge of the smallest patch, in which what rays look up is interpolated."""
+
+LOOKS = 2
+"""Times that gather rays are looked up again in the light of the vertices: each is one more bounce on the finest mesh,
+and a third changes less than the rays' noise."""
+
+BYTES_PER_PLACE = 4
+"""Kept for every gather ray: the place it met."""
+
+RAYS_TO_FIND_CUTS = 16
 """Rays that tell whether a place on an edge is hidden."""
 
 LARGEST_IMBALANCE = 0.03
@@ -87,7 +108,7 @@ GATHER_SHARE = 0.6
 FEWEST_RAYS_PER_PATCH = 16
 
 MOST_RAYS = 2**25
-"""Rays of the coarsest patches: above it each gets fewer, as the rays of many patches together average out."""
+"""Rays of the coarsest patches: above it each gets fewer, as the many patches of a dense mesh average out."""
 
 
 def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress) -> BakeResult:
@@ -100,13 +121,18 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     Cancelled
         When `progress` raised it.
     """
-    clock, effort = Clock(progress), EFFORTS[settings.quality]
+    clock = Clock(progress)
 
     clock.start("Preparing", 0.0, 0.02)
     surfaces = join(scene)
     if not (surfaces.emission.any() or surfaces.world.any()):
         raise NoLightError("Nothing in the scene emits light; give a material some Emission, or the World a colour")
-    rays = RayScene(surfaces.points, surfaces.triangles, settings.threads)
+    with closing(RayScene(surfaces.points, surfaces.triangles, settings.threads)) as rays:
+        return _bake(scene, surfaces, rays, settings, clock)
+
+
+def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettings, clock: Clock) -> BakeResult:
+    effort = EFFORTS[settings.quality]
     lit = lit_sides(surfaces, rays, settings.seed)
 
     walked = rays.rays
@@ -117,9 +143,9 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     automatic = not settings.minimum_size and settings.method == "ADAPTIVE"
     finest = finest_size(surfaces, effort) if automatic else smallest
     finest_cut = finest / FINER_CUTS if automatic else smallest
-    tree = clustered_patches(surfaces, min(smallest, automatic_size(surfaces, effort)))
+    tree = coarse_patches(surfaces, smallest)
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
-    per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
+    per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
     transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
 
     clock.start("Form factors", 0.03, 0.4)
@@ -139,22 +165,46 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     traced = rays.rays
 
     clock.start("Gathering", 0.5, 0.95)
-    radiance = seen_radiance(transport, balance, solution, emitters)
-    bright, radiance = take_bright_patches(transport, balance, solution, radiance)
+    cells = Cells(
+        tree,
+        transport.locator,
+        transport.unlit_side,
+        smallest / CELLS_ALONG_PATCH,
+        cover,
+        COVER_GAP * rays.scale * finest,
+    )
+    seen = seen_radiance(transport, balance, solution, emitters)
+    bright, shining = bright_patches(transport, balance, solution, seen)
+    seen[shining] = 0.0
+    lit_by = (emitters, bright)
+    radiance = Radiance.of(cells, seen[cells.element], surfaces.world)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
+    most_kept = settings.memory_limit * 2**20 // (2 * BYTES_PER_PLACE)
 
     def gather_at(places: Receivers) -> Gathered:
-        return gather(transport, radiance, (emitters, bright), places, effort.gather, gathering)
+        return gather(transport, cells, radiance, lit_by, places, effort.gather, finest, most_kept, gathering)
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
-        return hidden_receivers(transport, places, RAYS_TO_FIND_CUTS)
+        return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
     if settings.output == "ORIGINAL":
-        shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
-        faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
+        shown, leaves = light_up(surfaces, lit, input_faces(surfaces), gather_at), PatchTree(surfaces)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
-        shown = light_up_in_detail(surfaces, lit, tree, sizes, effort.tolerance, gather_at, is_hidden)
+        shown, leaves = light_up_in_detail(surfaces, lit, tree, sizes, effort.tolerance, gather_at, is_hidden)
+
+    if shown.gathered.places.shape[1] and settings.output == "REFINED":
+        left = left_emission(surfaces, emitters)
+        fixed = np.isin(cells.element, shining)
+        partly = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
+        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, seen[cells.element], fixed, partly)
+        for _ in range(LOOKS):
+            radiance = Radiance.of(cells, interpolated.at(shown), surfaces.world)
+            shown = replace(shown, gathered=look_again(transport, radiance, shown.gathered))
+
+    if settings.output == "ORIGINAL":
+        faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
+    else:
         clock.start("Cutting", 0.95, 0.98)
         faces, face, irradiance = cut_where_hidden(gather_at, is_hidden, shown)
 
@@ -165,7 +215,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     clock.stop()
     balance_sheet = energy(balance, solution, surfaces)
     told: dict[str, Any] = {
-        "patches": len(tree.patches()),
+        "patches": len(tree.leaves()),
         "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
         "triangles": sum(len(mesh.triangles) for mesh in meshes),
         "rays": rays.rays,
@@ -232,12 +282,12 @@ def subdivide(
     tree, surfaces = transport.tree, transport.surfaces
 
     def seeds() -> Ints:
-        patches = tree.patches()
-        patches = patches[surfaces.baked[tree.triangle[patches]]]
-        behind = patches[lit[surfaces.shell_of_triangle[tree.triangle[patches]], 1]]
-        return np.sort(np.concatenate([2 * patches, 2 * behind + 1]))
+        leaves = tree.leaves()
+        leaves = leaves[surfaces.baked[tree.triangle[leaves]]]
+        behind = leaves[lit[surfaces.shell_of_triangle[tree.triangle[leaves]], 1]]
+        return np.sort(np.concatenate([2 * leaves, 2 * behind + 1]))
 
-    report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.patches()):,} patches, {transport.rays.rays:,} rays")
+    report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.leaves()):,} patches, {transport.rays.rays:,} rays")
     if settings.method == "ADAPTIVE":
         return refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report)
     return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report)
@@ -262,7 +312,7 @@ def limit_warnings(
         warnings.append("The memory limit ended the subdivision early; raise it or the minimum size for an even result")
     if rays_per_patch < effort.rays_per_patch:
         warnings.append(
-            f"For the memory limit or the number of patches, each patch was given {rays_per_patch} rays only"
+            f"For the memory limit or the number of triangles, each patch was given {rays_per_patch} rays only"
         )
     if not solution.converged:
         warnings.append(f"The energy balance was solved to a residual of {solution.residual:.1e} only")

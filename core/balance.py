@@ -11,14 +11,11 @@ import numpy as np
 
 from .direct import LUMINANCE, Emitters, direct_irradiance
 from .errors import UnsolvableError
-from .gather import Radiance
-from .geometry import triangle_areas
-from .reachability import side_normals
 from .rows import ESCAPED, Cover, Shares
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
-from .transport import Transport, sample_points
+from .transport import Transport, element_normals, sample_points
 
 BRIGHT = 10.0
 """Times the mean radiance of all patches above which one is sampled explicitly, as emitters are."""
@@ -77,15 +74,17 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     share = np.ones(len(elements))
     share[number[twins]] = cover.covered.mean(axis=1)
     share[number[cover.element]] -= cover.covered.mean(axis=1)
+    a, b, c = (tree.points[tree.corners[base >> 1, k]] for k in range(3))
+    triangle = tree.triangle[base >> 1]
     return Balance(
         elements,
         base,
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
-        tree.areas(base >> 1) * (1.0 - buried) * share,
+        np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried) * share,
         buried,
-        tree.means(base >> 1, surfaces.reflectance),
-        tree.means(base >> 1, surfaces.emission),
+        surfaces.reflectance[triangle],
+        surfaces.emission[triangle],
     )
 
 
@@ -95,11 +94,11 @@ def exchange_of(receiver: Ints, source: Ints, factor: Floats) -> Exchange:
     return Exchange(receiver[start], start, source, factor.astype(np.float32))
 
 
-def explicit_emission(transport: Transport, balance: Balance, emitters: Emitters) -> Floats:
-    """The emission of elements that is left to rays: zero where the emitter is sampled explicitly, (m, 3)."""
-    left = transport.surfaces.emission.copy()
-    left[emitters.triangle] = 0.0
-    return transport.tree.means(balance.base >> 1, left)
+def left_emission(surfaces: Surfaces, emitters: Emitters) -> Floats:
+    """The emission of triangles that is left to rays: zero where the emitter is sampled explicitly, (triangles, 3)."""
+    emission = surfaces.emission.copy()
+    emission[emitters.triangle] = 0.0
+    return emission
 
 
 def direct_on_patches(
@@ -120,7 +119,8 @@ def direct_on_patches(
         light = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
         for rows, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
             direct[number[rows]] = (light * chosen[..., None]).sum(axis=1) / chosen.sum(axis=1)[:, None]
-    by_rays = balance.exchange.apply(explicit_emission(transport, balance, emitters))
+    left = left_emission(transport.surfaces, emitters)
+    by_rays = balance.exchange.apply(left[transport.tree.triangle[balance.base >> 1]])
     return direct + by_rays + balance.escape[:, None] * transport.surfaces.world
 
 
@@ -133,42 +133,43 @@ def _direct_at(
     report: Callable[[float], None],
 ) -> Floats:
     """Direct light at points of elements, (k, p, 3) each."""
-    light = np.zeros(points.shape)
     count = points.shape[1]
-    on_plane = np.all(normals == normals[:, :1], axis=(1, 2))
-    for rows, neighbours in ((np.flatnonzero(on_plane), count), (np.flatnonzero(~on_plane), 1)):
 
-        def work(first: int, last: int, rows: Ints = rows, neighbours: int = neighbours) -> Floats:
-            part = rows[first:last]
-            at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
-            keys = (elements[part, None] * count + np.arange(count)).ravel()
-            found, _ = direct_irradiance(
-                emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, neighbours
-            )
-            return found.reshape(-1, count, 3)
+    def work(first: int, last: int) -> Floats:
+        at, axis = points[first:last].reshape(-1, 3), normals[first:last].reshape(-1, 3)
+        keys = (elements[first:last, None] * count + np.arange(count)).ravel()
+        light, _ = direct_irradiance(
+            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, count
+        )
+        return light.reshape(-1, count, 3)
 
-        parts = transport.rays.map(work, len(rows), count * SHADOW_RAYS_PER_POINT, report)
-        light[rows] = np.concatenate([np.zeros((0, count, 3)), *parts])
-    return light
+    parts = transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)
+    return np.concatenate([np.zeros((0, count, 3)), *parts])
 
 
-def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Radiance:
-    """What gather rays see on each element: reflected light, and emission that is not sampled explicitly."""
+def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Floats:
+    """What gather rays see on each element and twin: reflected light, and emission that is not sampled explicitly."""
     values = np.zeros((max(2 * len(transport.tree), int(balance.elements.max(initial=0)) + 1), 3))
-    values[balance.elements] = solution.reflected + explicit_emission(transport, balance, emitters)
-    return Radiance.of(values, transport.surfaces.world)
+    left = left_emission(transport.surfaces, emitters)
+    values[balance.elements] = solution.reflected + left[transport.tree.triangle[balance.base >> 1]]
+    return values
 
 
-def take_bright_patches(
-    transport: Transport, balance: Balance, solution: Solution, radiance: Radiance
-) -> tuple[Emitters, Radiance]:
-    """Take the patches out of what rays look up that few rays would find, and much brighter than the rest.
+def bright_patches(
+    transport: Transport, balance: Balance, solution: Solution, radiance: Floats
+) -> tuple[Emitters, Ints]:
+    """Patches that few rays would find, and much brighter than the rest, to be sampled as lights instead.
 
     The ceiling above a lamp is a lamp itself: left to chance, it would streak whatever it lights.
 
+    Parameters
+    ----------
+    radiance : (elements, 3) float
+        What gather rays would see on each.
+
     Returns
     -------
-    The patches as emitters of one side, and the radiance without them.
+    The patches as emitters of one side, and their elements.
     """
     tree = transport.tree
     luminance = solution.reflected @ LUMINANCE
@@ -178,24 +179,15 @@ def take_bright_patches(
     weight = np.where(whole & (luminance > BRIGHT * mean), balance.areas * luminance**2, 0.0)
     count = min(int((weight > 0.0).sum()), MOST_BRIGHT_PATCHES)
     chosen = np.sort(np.argsort(-weight, kind="stable")[:count])
-    row, carriers = tree.expanded(balance.elements[chosen] >> 1)
-    # A cluster is as many emitters as it has triangles; of those that are too many together the weakest are left.
-    order = np.argsort(-weight[chosen], kind="stable")
-    triangles = np.bincount(row, minlength=count)
-    fits = np.zeros(count, dtype=bool)
-    fits[order] = np.cumsum(triangles[order]) <= MOST_BRIGHT_PATCHES
-    row, carriers, elements = row[fits[row]], carriers[fits[row]], balance.elements[chosen]
-    values = radiance.values.copy()
-    values[elements[fits]] = 0.0
-    corners = tree.points[tree.corners[carriers]]
+    elements = balance.elements[chosen]
     return Emitters(
-        np.full(len(carriers), -1, dtype=np.int64),
-        corners,
-        side_normals(transport.surfaces.normals[tree.triangle[carriers]], elements[row] & 1),
-        triangle_areas(corners),
-        radiance.values[elements[row]].astype(np.float64),
-        np.ones(len(carriers), dtype=bool),
-    ), Radiance(values)
+        np.full(count, -1, dtype=np.int64),
+        tree.points[tree.corners[elements >> 1]],
+        element_normals(transport.surfaces, tree, elements),
+        balance.areas[chosen],
+        radiance[elements],
+        np.ones(count, dtype=bool),
+    ), elements
 
 
 def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:

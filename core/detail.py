@@ -104,7 +104,7 @@ def light_up_in_detail(
     tolerance: float,
     gather_at: GatherAt,
     is_hidden: IsHidden,
-) -> Lit:
+) -> tuple[Lit, PatchTree]:
     """Gather light at the corners of a conforming mesh, and split its faces until the estimated error is small.
 
     Parameters
@@ -117,6 +117,10 @@ def light_up_in_detail(
         RMS error over the surface to be reached, relative to the mean.
     is_hidden : callable
         Tells whether receivers are hidden: faces that another object hides in part are split where it has a corner.
+
+    Returns
+    -------
+    The faces and their light, and the tree whose leaves they lie in.
     """
     tree = tree.copy()
     known = light_up(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at)
@@ -134,7 +138,7 @@ def light_up_in_detail(
                 break
             tree.split(nodes)
             known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
-    return known
+    return known, tree
 
 
 def _nodes_with_crooked_cuts(known: Lit, tree: PatchTree, smallest: float, is_hidden: IsHidden) -> Ints:
@@ -161,10 +165,7 @@ def _updated(surfaces: Surfaces, lit_sides: NDArray[np.bool_], faces: Faces, gat
     place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
     missing = np.flatnonzero(old.codes[place] != places.codes)
     new = gather_at(places.taken(missing))
-    kept = known.gathered
-    irradiance, noise, hidden = kept.irradiance[place], kept.noise[place], kept.hidden[place]
-    irradiance[missing], noise[missing], hidden[missing] = new.irradiance, new.noise, new.hidden
-    return Lit(faces, face, side, places, Gathered(irradiance, noise, hidden))
+    return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing))
 
 
 def _nodes_to_split(surfaces: Surfaces, known: Lit, tree: PatchTree, smallest: float, tolerance: float) -> Ints:

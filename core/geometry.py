@@ -19,13 +19,6 @@ def triangle_cross(points: Floats, triangles: Ints) -> Floats:
     return np.cross(b - a, c - a)
 
 
-def triangle_areas(corners: Floats) -> Floats:
-    """Areas of triangles from their corners (t, 3, 3), (t,)."""
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    result: Floats = np.linalg.norm(cross, axis=1) / 2.0
-    return result
-
-
 def normalized(vectors: Floats) -> Floats:
     """Vectors of length 1 along the last axis; the zero vector stays zero."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)

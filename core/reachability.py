@@ -91,7 +91,7 @@ def _visits(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int) -> Floa
         triangle, back = hits.triangle[met].astype(np.int64), hits.back[met]
         np.add.at(visits, (shell[triangle], back.astype(np.int64)), 1.0)
         reflecting = surfaces.reflectance[triangle].any(axis=1)
-        weights = hits.weights[met].astype(np.float64)[reflecting]
+        weights = hits.weights()[met].astype(np.float64)[reflecting]
         walks = _leaving(surfaces, rays, triangle[reflecting], back[reflecting], weights, seed + bounce + 10)
     return visits
 

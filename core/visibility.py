@@ -8,7 +8,7 @@ import os
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeVar
@@ -28,6 +28,11 @@ intersection is off by, and below a gap of 0.1 mm in a scene of 50 m."""
 
 RAYS_PER_BATCH = 32768
 """Rays handed to the ray library at once: short enough (about 10 ms) to report and to stop, long enough to be fast."""
+
+FEWEST_RAYS_PER_BATCH = 4096
+
+BATCHES_OF_SHORT_WORK = 8
+"""Batches that little work is cut into, so that no thread waits long for the last."""
 
 BATCHES_IN_FLIGHT = 4
 """Batches queued for each thread, so that none idles while the main one reports."""
@@ -63,7 +68,7 @@ class Hits:
     ----------
     triangle : (n,) int32
         -1 where the ray left the scene.
-    weights : (n, 2) float32
+    u, v : (n,) float32
         Barycentric weights of the triangle's corners 1 and 2.
     distance : (n,) float32, local units
         Huge where the ray left the scene.
@@ -72,9 +77,14 @@ class Hits:
     """
 
     triangle: NDArray[np.int32]
-    weights: NDArray[np.float32]
+    u: NDArray[np.float32]
+    v: NDArray[np.float32]
     distance: NDArray[np.float32]
     back: NDArray[np.bool_]
+
+    def weights(self) -> NDArray[np.float32]:
+        """The two weights side by side, (n, 2)."""
+        return np.stack([self.u, self.v], axis=1)
 
 
 class RayScene:
@@ -108,10 +118,15 @@ class RayScene:
         self.rays = 0
         self.seconds = 0.0
         self._counting = threading.Lock()
+        self._pool = ThreadPoolExecutor(self.threads)
         self._scene = rtcore_scene.EmbreeScene()
         mesh_construction.TriangleMesh(self._scene, self.local(points), triangles.astype(np.int32))
         # Embree builds its tree at the first ray; do it here, on one thread.
         self._scene.run(np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32), query="OCCLUDED")
+
+    def close(self) -> None:
+        """End the threads."""
+        self._pool.shutdown()
 
     def local(self, points: Floats) -> NDArray[np.float32]:
         """Positions (..., 3) in the ray library's own coordinates, centred and scaled to 1."""
@@ -129,9 +144,8 @@ class RayScene:
     def first_hits(self, origins: NDArray[np.float32], directions: NDArray[np.float32]) -> Hits:
         """Trace rays (n, 3) from origins in local coordinates, lifted off their surface by `OFFSET`."""
         answer = self._run(origins, directions, query="INTERSECT", output=True)
-        weights = np.stack([answer["u"], answer["v"]], axis=1)
         back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
-        return Hits(answer["primID"], weights, answer["tfar"], back)
+        return Hits(answer["primID"], answer["u"], answer["v"], answer["tfar"], back)
 
     def visible(self, origins: Floats, normals: Floats, targets: Floats) -> NDArray[np.bool_]:
         """Whether nothing lies between each origin (n, 3), lifted off its surface, and its target, (n,) bool."""
@@ -156,22 +170,25 @@ class RayScene:
         The batches depend on the numbers alone, not on the threads, so neither does the result. `report` is called
         with the share done from the calling thread between batches, and may raise to stop.
         """
-        size = max(1, RAYS_PER_BATCH // max(1, rays_each))
+        rays = min(RAYS_PER_BATCH, max(FEWEST_RAYS_PER_BATCH, count * rays_each // BATCHES_OF_SHORT_WORK))
+        size = max(1, rays // max(1, rays_each))
         starts = range(0, count, size)
+        if len(starts) < 2:
+            return [work(0, count) for _ in starts]
         results: list[Result] = []
-        with ThreadPoolExecutor(self.threads) as pool:
-            waiting = []
-            try:
-                for start in starts:
-                    waiting.append(pool.submit(work, start, min(start + size, count)))
-                    if len(waiting) >= BATCHES_IN_FLIGHT * self.threads:
-                        results.append(waiting.pop(0).result())
-                        report(len(results) / len(starts))
-                while waiting:
+        waiting: list[Future[Result]] = []
+        try:
+            for start in starts:
+                waiting.append(self._pool.submit(work, start, min(start + size, count)))
+                if len(waiting) >= BATCHES_IN_FLIGHT * self.threads:
                     results.append(waiting.pop(0).result())
                     report(len(results) / len(starts))
-            except BaseException:
-                for future in waiting:
-                    future.cancel()
-                raise
+            while waiting:
+                results.append(waiting.pop(0).result())
+                report(len(results) / len(starts))
+        except BaseException:
+            for future in waiting:
+                future.cancel()
+            wait(waiting)
+            raise
         return results

@@ -131,7 +131,9 @@ def test_a_ceiling_close_above_a_lamp_does_not_streak_the_walls(monkeypatch):
         left = light[inner] - terms @ np.linalg.lstsq(terms, light[inner], rcond=None)[0]
         return float(np.sqrt(np.mean(left**2)) / light[inner].mean())
 
+    # A second look at the vertices' own light smooths both; what the explicit sampling does shows without it.
+    monkeypatch.setattr("radiosity_bake.core.bake.LOOKS", 0)
     smooth = roughness()
     monkeypatch.setattr("radiosity_bake.core.balance.MOST_BRIGHT_PATCHES", 0)
     left_to_chance = roughness()
-    assert smooth < 0.65 * left_to_chance
+    assert smooth < 0.7 * left_to_chance

@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The light that was gathered at the vertices, as rays see it: interpolated over the faces, cell by cell.
+
+A patch has one radiosity, however light changes across it. What was gathered at the vertices is finer and less noisy,
+so the rays of the gather look a second time, at what they found themselves: one more bounce of the solution, on the
+finest mesh there is, without tracing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells import Cells
+from .detail import Lit
+from .direct import LUMINANCE
+from .patches import PatchTree
+from .scene import Floats, Ints
+from .surfaces import Surfaces
+
+STEEP = 1.0
+"""Difference between a face's corners, relative to their mean, above which a face that is a whole patch shows the
+patch's own radiosity: what was gathered at three points says less of its mean than rays from all over it."""
+
+MOST_CORRECTED = 0.1
+"""Share by which the light at the vertices is made to agree with the patches' power at most."""
+
+
+class InterpolatedRadiance:
+    """Radiance of each place from the irradiance at the vertices around it.
+
+    Parameters
+    ----------
+    tree : PatchTree
+        Whose leaves the shown faces lie in: a further subdivision of the one that `cells` were made of.
+    emission : (triangles, 3) float, W m^-2 sr^-1
+        Emitted radiance that rays are to see.
+    solved : (places, 3) float
+        What places show that lie on no face: meshes that are not baked, twins of covered elements.
+    keep : (places,) bool
+        Places that keep it as well.
+    partly : (places,) bool
+        Places on elements that are covered or inside a solid in part, whose radiosity is that of the rest.
+    """
+
+    def __init__(
+        self,
+        cells: Cells,
+        tree: PatchTree,
+        surfaces: Surfaces,
+        emission: Floats,
+        solved: Floats,
+        keep: NDArray[np.bool_],
+        partly: NDArray[np.bool_],
+    ) -> None:
+        self._tree, self._solved, self._copied = tree, solved, cells.copied
+        leaf, weights = tree.descend(cells.node, cells.centre)
+        self._place: Ints = np.flatnonzero(~keep[: 2 * len(leaf)])
+        cell = self._place >> 1
+        self._side = 2 * leaf[cell] + (self._place & 1)
+        self._whole = leaf[cell] == cells.element[self._place] >> 1
+        self._areas = cells.areas[cell]
+        self._open = ~partly[self._place]
+        u, v = weights[cell, 0], weights[cell, 1]
+        self._shares = [np.asarray(share, dtype=np.float32)[:, None] for share in (1.0 - u - v, u, v)]
+        triangle = tree.triangle[leaf[cell]]
+        self._reflectance = surfaces.reflectance.astype(np.float32)[triangle]
+        self._emission = emission.astype(np.float32)[triangle]
+
+    def at(self, shown: Lit) -> Floats:
+        """Radiance of places when the vertices have the light of `shown`, (places, 3), W m^-2 sr^-1."""
+        corners = corner_irradiance_of_nodes(self._tree, shown)
+        irradiance = sum(share * corners[self._side, k] for k, share in enumerate(self._shares))
+        light = corners @ LUMINANCE.astype(np.float32)
+        with np.errstate(invalid="ignore"):
+            steep = np.ptp(light, axis=1) > STEEP * light.mean(axis=1)
+        known = np.isfinite(irradiance[:, 0]) & ~(self._whole & steep[self._side])
+        result = self._solved.copy()
+        reflected = self._reflectance * irradiance
+        reflected *= self._balanced(reflected, known)
+        result[self._place[known]] = (self._emission + reflected)[known]
+        lit = np.zeros(len(result), dtype=bool)
+        lit[self._place[known]] = True
+        copies = len(result) - len(self._copied) + np.flatnonzero(lit[self._copied])
+        result[copies] = result[self._copied[lit[self._copied]]]
+        return result
+
+    def _balanced(self, reflected: NDArray[np.float32], known: NDArray[np.bool_]) -> Floats:
+        """What reflected light is to be multiplied by for as much power as the patches reflect, (3,).
+
+        Straight lines between vertices cut the tops off: the faces tell how light is spread, the patches how much
+        there is of it.
+        """
+        counted = known & self._open
+        solved = self._solved[self._place[counted]] - self._emission[counted]
+        power, drawn = (self._areas[counted] @ light for light in (solved, reflected[counted].astype(np.float64)))
+        ratio = np.divide(power, drawn, out=np.ones(3), where=drawn > 0.0)
+        corrected: Floats = np.clip(ratio, 1.0 - MOST_CORRECTED, 1.0 + MOST_CORRECTED)
+        return corrected
+
+
+def corner_irradiance_of_nodes(tree: PatchTree, shown: Lit) -> NDArray[np.float32]:
+    """Irradiance over pi at the corners of each side of each node, (2 * nodes, 3, 3); NaN where no face lies in it."""
+    values = np.full((2 * len(tree), 3, 3), np.nan, dtype=np.float32)
+    faces, at_corners = shown.faces, shown.corner_irradiance()
+    node = faces.node[shown.face]
+    for corner_of_node in range(3):
+        wanted = tree.corners[node, corner_of_node]
+        for corner_of_face in range(3):
+            same = np.flatnonzero(faces.corners[shown.face, corner_of_face] == wanted)
+            values[2 * node[same] + shown.side[same], corner_of_node] = at_corners[same, corner_of_face]
+    return values
