@@ -197,7 +197,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         left = left_emission(surfaces, emitters)
         fixed = np.isin(cells.element, shining)
         partly = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
-        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, seen[cells.element], fixed, partly)
+        solved, met = seen[cells.element], shown.gathered.places
+        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, solved, met, fixed, partly)
         for _ in range(LOOKS):
             radiance = Radiance.of(cells, interpolated.at(shown), surfaces.world)
             shown = replace(shown, gathered=look_again(transport, radiance, shown.gathered))

@@ -38,6 +38,8 @@ class InterpolatedRadiance:
         Emitted radiance that rays are to see.
     solved : (places, 3) float
         What places show that lie on no face: meshes that are not baked, twins of covered elements.
+    met : (n, r) int32
+        What rays met: other places need no radiance.
     keep : (places,) bool
         Places that keep it as well.
     partly : (places,) bool
@@ -51,12 +53,16 @@ class InterpolatedRadiance:
         surfaces: Surfaces,
         emission: Floats,
         solved: Floats,
+        met: NDArray[np.int32],
         keep: NDArray[np.bool_],
         partly: NDArray[np.bool_],
     ) -> None:
         self._tree, self._solved, self._copied = tree, solved, cells.copied
         leaf, weights = tree.descend(cells.node, cells.centre)
-        self._place: Ints = np.flatnonzero(~keep[: 2 * len(leaf)])
+        seen = np.zeros(len(solved), dtype=bool)
+        seen[met[met >= 0]] = True
+        seen[cells.copied] |= seen[len(solved) - len(cells.copied) :]
+        self._place: Ints = np.flatnonzero((seen & ~keep)[: 2 * len(leaf)])
         cell = self._place >> 1
         self._side = 2 * leaf[cell] + (self._place & 1)
         self._whole = leaf[cell] == cells.element[self._place] >> 1
