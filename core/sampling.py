@@ -71,6 +71,23 @@ def triangle_weights(square: Floats) -> Floats:
     return np.where(square.sum(axis=-1, keepdims=True) > 1.0, 1.0 - square, square)
 
 
+def triangle_lattice(count: int, shift: Floats) -> Floats:
+    """So many points of a triangle, as even as they can be, as weights of its three corners, (count, 3).
+
+    A golden lattice of the unit square, whose one side is drawn together to the first corner. Of what a straight edge
+    cuts off the triangle it finds the share with half the error of `sequence`, folded.
+
+    Parameters
+    ----------
+    shift : (2,) float, 0..1
+        Where in their cells the points lie, and where round the first corner they begin.
+    """
+    index = np.arange(count, dtype=np.float64)
+    away = np.sqrt((index + shift[0]) / count)
+    across = np.mod(index * GOLDEN + shift[1], 1.0)
+    return np.stack([1.0 - away, away * (1.0 - across), away * across], axis=1)
+
+
 def hemisphere(square: Floats) -> Floats:
     """Directions about +z with density cos / pi from points of the unit square, (..., 2) to (..., 3)."""
     radius, angle = np.sqrt(square[..., 0]), square[..., 1] * (2.0 * np.pi)

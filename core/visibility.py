@@ -147,16 +147,34 @@ class RayScene:
         back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
         return Hits(answer["primID"], answer["u"], answer["v"], answer["tfar"], back)
 
-    def visible(self, origins: Floats, normals: Floats, targets: Floats) -> NDArray[np.bool_]:
-        """Whether nothing lies between each origin (n, 3), lifted off its surface, and its target, (n,) bool."""
-        start = self.local(origins) + (normals * OFFSET).astype(np.float32)
-        toward = self.local(targets) - start
-        distance = np.sqrt(np.einsum("nx,nx->n", toward, toward))
-        toward /= np.maximum(distance, np.finfo(np.float32).tiny)[:, None]
-        # The target lies on a surface of its own: stop short of it by the same offset, twice for grazing rays.
-        limit = np.maximum(distance - np.float32(2.0 * OFFSET), np.float32(0.0))
-        answer: NDArray[np.int32] = self._run(start, toward, dists=limit, query="OCCLUDED")
-        return answer < 0
+    def lifted(self, points: Floats, normals: Floats) -> tuple[NDArray[np.float32], Floats]:
+        """Where rays start that leave a surface at points (n, 3) on the side of its normals.
+
+        Returns
+        -------
+        origins : (n, 3) float32, local units
+        back : (n, 3) float, local units
+            The way from these origins to the points, free of their rounding: a target that is seen at a grazing angle
+            must not slip through its plane.
+        """
+        exact = (points - self._centre) * self.scale
+        origins = (exact + normals * OFFSET).astype(np.float32)
+        return origins, exact - origins
+
+    def visible(self, origins: NDArray[np.float32], toward: NDArray[np.float32]) -> NDArray[np.bool_]:
+        """Whether nothing lies between origins and targets, both lifted off their surfaces, (n, r) bool.
+
+        Parameters
+        ----------
+        origins : (n, 3) float32, local units
+        toward : (n, r, 3) float32, local units
+            The way from each origin to its targets.
+        """
+        starts = np.repeat(origins, toward.shape[1], axis=0)
+        # The ray library counts in lengths of the direction.
+        ends = np.ones(len(starts), dtype=np.float32)
+        answer: NDArray[np.int32] = self._run(starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED")
+        return answer.reshape(toward.shape[:2]) < 0
 
     def map(
         self,

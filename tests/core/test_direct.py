@@ -5,8 +5,9 @@
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.direct import LARGEST_EMITTER_COUNT, direct_irradiance, strongest_emitters
+from radiosity_bake.core.direct import LARGEST_EMITTER_COUNT, LATTICE_ERROR, direct_irradiance, strongest_emitters
 from radiosity_bake.core.reachability import lit_sides
+from radiosity_bake.core.sampling import triangle_lattice
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
@@ -135,6 +136,41 @@ def test_more_shadow_rays_narrow_the_penumbra():
     noise = [direct([LAMP, sheet, FLOOR], np.zeros((500, 3)), rays=n)[0][:, 0].std() for n in (8, 32, 128)]
     # Independent rays would halve it each time.
     assert noise[1] < 0.6 * noise[0] and noise[2] < 0.6 * noise[1]
+
+
+@pytest.mark.parametrize("rays", [8, 32, 128, 512])
+def test_a_lattice_finds_the_share_behind_a_straight_edge_to_its_stated_error(rays):
+    rng = np.random.default_rng(rays)
+    # Lines in random directions and places over an equilateral triangle, given by the heights of its corners over them.
+    angle = rng.uniform(0, 2 * np.pi, 4000)[:, None] + [0.0, 2 * np.pi / 3, 4 * np.pi / 3]
+    height = np.cos(angle)
+    height -= rng.uniform(height.min(axis=1), height.max(axis=1))[:, None]
+    low, middle, high = np.sort(height, axis=1).T
+    below = np.where(
+        middle > 0, low**2 / ((middle - low) * (high - low)), 1 - high**2 / ((high - middle) * (high - low))
+    )
+    error = [
+        np.mean((height @ triangle_lattice(rays, shift).T < 0.0), axis=1) - below for shift in rng.uniform(size=(16, 2))
+    ]
+    stated = LATTICE_ERROR * np.sqrt(np.mean(below * (1 - below))) * rays**-0.75
+    # 64,000 lines; what is uncertain is the law itself, and how it goes on to more points.
+    assert np.sqrt(np.mean(np.square(error))) == pytest.approx(stated, rel=0.15)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.1])
+def test_a_wall_is_seen_whole_from_places_close_beside_it(angle):
+    # Rays that graze a wall must not slip through it, or stop at it, whatever way the room is turned.
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    walls = [
+        surface_mesh(w.name, w.vertices @ turn.T, w.triangles, emission=1.0)
+        for w in exact.box_walls((1, 2, 0.5), emission=1.0)
+    ]
+    points = np.array([[0.5 + 0.01 * k, 10.0**-d, 0.0] for k in range(20) for d in (1, 2, 3, 4)])
+    found, uncertainty = direct(walls, points @ turn.T, turn[:, 2], rays=64)
+    # In a closed room that glows everywhere the hemisphere is full.
+    np.testing.assert_allclose(found, 1.0, rtol=1e-9)
+    assert not uncertainty.any()
 
 
 def test_the_inside_of_a_glowing_solid_is_no_emitter():
