@@ -16,7 +16,7 @@ from typing import Any
 
 from radiosity_bake.core.settings import QUALITIES, BakeSettings
 
-from . import publish
+from . import form_factors, publish
 from .accuracy import compare
 from .machine import OUT, write_json
 from .measure import Judged, Measured, judged, measure
@@ -130,6 +130,8 @@ def main() -> None:
         print(HEADER, flush=True)
         for name in asked.scene or BENCH_SCENES:
             measure_scene(name, asked, run)
+        if not asked.scene:
+            form_factors.write()
     whole = not (asked.scene or asked.quality or asked.peer or asked.parts or asked.page_only)
     for path in publish.write_all(OUT, docs=whole or asked.publish):
         print(path)

@@ -13,25 +13,34 @@ from .results import Document, Entry, of_method, title
 
 BAKES = (OURS, UNIFORM, RULE)
 
+FORM_FACTOR_COLOURS = (COLOURS[OURS], "#2563eb", "#15803d")
+
+# Errors below are those of rounding.
+LEAST_DRAWN = 1e-8
+
 # Small enough for the repository, large enough to read.
 DOTS_PER_INCH = 80
 
 
 def draw_all(document: Document, folder: Path, kinds: Sequence[str] = ("svg", "png")) -> list[Path]:
-    """Draw both charts, `performance-all` and `performance`, into a folder; returns the files.
+    """Draw the charts of what was measured, `performance-all` and others, into a folder; returns the files.
 
     Parameters
     ----------
     document : dict
         What `results.collect` returns.
     """
-    if not document["scenes"]:
-        return []
     pyplot = _pyplot()
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
-    for name, make in (("performance-all", every_chart), ("performance", one_chart)):
-        figure = make(pyplot, document["scenes"])
+    for name, make, measured in (
+        ("performance-all", every_chart, document["scenes"]),
+        ("performance", one_chart, document["scenes"]),
+        ("performance-form-factors", form_factor_chart, (document["form_factors"] or {}).get("results")),
+    ):
+        if not measured:
+            continue
+        figure = make(pyplot, measured)
         for kind in kinds:
             path = folder / f"{name}.{kind}"
             figure.savefig(path, dpi=DOTS_PER_INCH, metadata={"Date": None} if kind == "svg" else None)
@@ -81,6 +90,26 @@ def one_chart(pyplot: Any, scenes: Sequence[Document]) -> Any:
     else:
         legend(figure, flat[0])
     figure.tight_layout()
+    return figure
+
+
+def form_factor_chart(pyplot: Any, results: Sequence[Entry]) -> Any:
+    """Return the figure of error against time, a panel for each case of `form_factors`."""
+    names = list(dict.fromkeys(entry["case"] for entry in results))
+    figure, panels = pyplot.subplots(1, len(names), figsize=(3.6 * len(names), 3.9), squeeze=False)
+    methods = list(dict.fromkeys(entry["method"] for entry in results))
+    for axes, name in zip(panels[0], names, strict=True):
+        for method, colour in zip(methods, FORM_FACTOR_COLOURS, strict=False):
+            found = (entry for entry in results if (entry["case"], entry["method"]) == (name, method))
+            points = sorted((e["seconds"], max(e["error"], LEAST_DRAWN)) for e in found)
+            if points:
+                axes.plot(*zip(*points, strict=True), "o-", label=method, color=colour, markersize=4)
+        axes.set_title(name, loc="left", fontsize=9)
+        axes.set_xlabel("seconds")
+        finish(axes)
+    panels[0][0].set_ylabel("relative error")
+    legend(figure, panels[0][0])
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.92))
     return figure
 
 

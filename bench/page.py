@@ -16,16 +16,21 @@ from .methods import (
     FEWER_VERTICES,
     LARGEST_ERROR,
     OURS,
+    PAPER_GAINS,
     PEERS,
     RAY_SHARE,
     RULE,
     UNIFORM,
     faster_goal,
 )
+from .paper_table import costliest_stage, gain
 from .results import Document, Entry, of_method, pairs, title
 
 # Share of the processors that others may take before a time is called disturbed.
 DISTURBED = 0.05
+
+# Relative error of form factors to which times are compared.
+FORM_FACTOR_ERROR = 0.01
 
 COMPARED_QUALITIES = ("GOOD", "HIGH")
 
@@ -37,7 +42,13 @@ def page(document: Document) -> str:
     parts = [introduction(document)]
     if document["scenes"]:
         parts += [goals(document), equal_error(document), vertices(document), own_bakes(document)]
-        parts += [growth(document), everything(document)]
+        parts += [growth(document)]
+    if document["form_factors"]:
+        parts += [form_factors(document["form_factors"]["results"])]
+    if document["paper_table"]:
+        parts += [paper_table(document["paper_table"])]
+    if document["scenes"]:
+        parts += [everything(document)]
     return "\n".join(line for part in parts for line in (*part, "")).rstrip() + "\n"
 
 
@@ -387,6 +398,80 @@ def growth_cells(entries: Sequence[Entry]) -> tuple[str, str, str, str]:
         exponent(first, last),
         exponent(entries[-2], last),
     )
+
+
+def form_factors(results: Sequence[Entry]) -> Lines:
+    """Put our form factors beside those of programs that compute nothing else."""
+    rows = []
+    for case, method in dict.fromkeys((entry["case"], entry["method"]) for entry in results):
+        found = [entry for entry in results if (entry["case"], entry["method"]) == (case, method)]
+        best = min(found, key=lambda e: e["error"])
+        within = cost_at(((e["seconds"], e["error"]) for e in found if e["seconds"] > 0.0), FORM_FACTOR_ERROR)
+        enough = seconds_of(within) if within and min(e["error"] for e in found) <= FORM_FACTOR_ERROR else "not reached"
+        cells = (f"{best['factor']:.6f}", f"{best['error']:.1e}", seconds(best["seconds"]), best["setting"], enough)
+        rows.append((f"{case}: {best['truth']:.6f} ({best['source']})", method, *cells))
+    header = ("case and truth", "program", "its best factor", "error", "seconds", "setting")
+    return [
+        "## Form factors",
+        "",
+        *paragraph(
+            "Beside programs that compute nothing else. Ours are the shares of traced rays that a bake works with, 64 "
+            "a triangle, the triangles split for more of them; building the ray library's scene is inside the clock. "
+            "Pairs of pyViewFactor are exact, but one ray between their middles tells whether they see each other."
+        ),
+        "",
+        "![Form factors](images/performance-form-factors.png)",
+        "",
+        *table((*header, f"seconds to {FORM_FACTOR_ERROR:.0%}"), rows),
+    ]
+
+
+def seconds_of(cost: AtError) -> str:
+    """Return a cost in seconds with its sign."""
+    return f"{SIGNS[cost.kind]}{cost.cost:.2g}"
+
+
+def paper_table(measured: Document) -> Lines:
+    """Show the paper's table, ours, with what both methods gain and lose."""
+    rows = []
+    for row in measured["rows"]:
+        u, a = row["uniform"], row["adaptive"]
+        stage, loss = costliest_stage(row)
+        goal = PAPER_GAINS.get(row["scene"]) if is_finest(row, measured["rows"]) else None
+        met = gain(row, "seconds") > (goal or 0.0)
+        rows.append(
+            (
+                f"{title(row['scene'])}, n = {row['minimum_size']:g} m",
+                *(f"{u[key]:,} / {a[key]:,}" for key in ("fragments", "vertices")),
+                *(f"{seconds(u[key])} / {seconds(a[key])}" for key in ("seconds", "processor_seconds")),
+                f"{percent(u['rms'])} / {percent(a['rms'])}",
+                f"{gain(row, 'fragments'):.1%}",
+                f"{gain(row, 'seconds'):.1%} ({gain(row, 'processor_seconds'):.1%})",
+                "yes" if met else "**no**",
+                f"{stage.replace('_', ' ')} {loss:+.0%}" if loss > 0.0 else "-",
+            )
+        )
+    finest = ", ".join(f"{goal:.0%}" for goal in PAPER_GAINS.values())
+    header = ("scene and minimum size", "fragments", "vertices", "seconds", "processor seconds", "error")
+    return [
+        "## The paper's table",
+        "",
+        *paragraph(
+            "Kulyasov & Nikulin's Table 1 on our scenes after its own: uniform / adaptive subdivision at the same "
+            f"minimum size, threshold {measured['threshold']:g}, quality {measured['quality']}; measured "
+            f"{measured['run'][:10]} by `make compare`. Both methods do the same with the fragments that they end "
+            "with. *Gain*: of the time of the whole picture, by wall clock and, in brackets, by processor time; every "
+            f"row should be positive, and the finest of each scene above {finest}. *Stage*: where adaptive loses most, "
+            "as a share of uniform's time."
+        ),
+        "",
+        *table((*header, "fewer fragments", "gain", "met", "stage"), rows),
+    ]
+
+
+def is_finest(row: Entry, rows: Sequence[Entry]) -> bool:
+    """Say whether a row has the least minimum size of its scene."""
+    return bool(row["minimum_size"] == min(r["minimum_size"] for r in rows if r["scene"] == row["scene"]))
 
 
 def everything(document: Document) -> Lines:

@@ -80,11 +80,17 @@ def working_seconds() -> float:
     return sum(ticks[k] for k in WORKING_STATES) / os.sysconf("SC_CLK_TCK")
 
 
+def timed_once(run: Callable[[], Result]) -> tuple[Result, Cost]:
+    """Return what `run` returns and what it took."""
+    start = Instant.now()
+    result = run()
+    return result, start.cost_until(Instant.now())
+
+
 def timed(run: Callable[[], Result]) -> tuple[Result, Cost]:
     """Return what `run` returns and what it took, the shortest of a few runs where it is short."""
     costs: list[Cost] = []
     while len(costs) < MOST_RUNS and sum(cost.seconds for cost in costs) < ENOUGH_SECONDS:
-        start = Instant.now()
-        result = run()
-        costs.append(start.cost_until(Instant.now()))
+        result, cost = timed_once(run)
+        costs.append(cost)
     return result, min(costs, key=lambda cost: cost.seconds)

@@ -3,7 +3,7 @@
 """Make the Python environments that the tests, the demo and the benchmarks run in.
 
     python3 -m tools.environments           .venv/py311 (Blender 4.2), .venv/py313 (Blender 5.2), .venv/main (the newer)
-    python3 -m tools.environments bench     also what the benchmarks compare with
+    python3 -m tools.environments bench     also what the benchmarks compare with, part of it in .venv/form-factors
 
 Each has Blender as a Python module (bpy). Beside each lies a twin without embreex, `.venv/py311-user`: there the ray
 library can only come from the extension's own zip, as on a user's computer. What is there and up to date stays.
@@ -161,6 +161,20 @@ def make(environment: Environment, interpreter: Path, extra: tuple[Path, ...] = 
     stamp.write_text(_fingerprint(requirements), encoding="utf-8")
 
 
+def make_form_factors(interpreter: Path) -> None:
+    """Make `.venv/form-factors`, unless it is there as its requirement file says; its numpy is not ours."""
+    folder, requirements = FOLDER / "form-factors", REQUIREMENTS / "form-factors.txt"
+    stamp = folder / "made-from"
+    if stamp.exists() and stamp.read_text(encoding="utf-8") == _fingerprint([requirements]):
+        return
+    print(f"making {folder}", flush=True)
+    subprocess.run([str(interpreter), "-m", "venv", "--clear", str(folder)], check=True)
+    command = [str(folder / "bin" / "python"), "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
+    if subprocess.run([*command, "--requirement", str(requirements)], check=False).returncode != 0:
+        raise MissingEnvironmentError(f"pip could not install what {folder} needs; its own words are above")
+    stamp.write_text(_fingerprint([requirements]), encoding="utf-8")
+
+
 def make_user_twin(environment: Environment, interpreter: Path) -> None:
     """Make the twin: an environment whose packages are links to those of the first, all but embreex."""
     command = [str(interpreter), "-m", "venv", "--clear", "--without-pip", str(environment.user_folder)]
@@ -230,9 +244,10 @@ def make_all(extra: tuple[Path, ...] = ()) -> list[Environment]:
 def main(arguments: list[str]) -> int:
     for_benchmarks = arguments == ["bench"]
     try:
-        make_all((REQUIREMENTS / "bench.txt",) if for_benchmarks else ())
+        made = make_all((REQUIREMENTS / "bench.txt",) if for_benchmarks else ())
         if for_benchmarks:
             install_llvm()
+            make_form_factors(made[-1].python)
     except (MissingEnvironmentError, DebianError) as error:
         print(f"environments: {error}", file=sys.stderr)
         return 1
