@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from . import refinement
 from .balance import (
     balance_of,
-    bright_patches,
     check_solved,
     direct_on_patches,
     energy,
@@ -174,15 +173,12 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         COVER_GAP * rays.scale * finest,
     )
     seen = seen_radiance(transport, balance, solution, emitters)
-    bright, shining = bright_patches(transport, balance, solution, seen)
-    seen[shining] = 0.0
-    lit_by = (emitters, bright)
     radiance = Radiance.of(cells, seen[cells.element], surfaces.world)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
     most_kept = settings.memory_limit * 2**20 // (2 * BYTES_PER_PLACE)
 
     def gather_at(places: Receivers) -> Gathered:
-        return gather(transport, cells, radiance, lit_by, places, effort.gather, finest, most_kept, gathering)
+        return gather(transport, cells, radiance, emitters, places, effort.gather, finest, most_kept, gathering)
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
@@ -195,10 +191,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
 
     if shown.gathered.places.shape[1] and settings.output == "REFINED":
         left = left_emission(surfaces, emitters)
-        fixed = np.isin(cells.element, shining)
         partly = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
         solved, met = seen[cells.element], shown.gathered.places
-        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, solved, met, fixed, partly)
+        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, solved, met, partly)
         for _ in range(LOOKS):
             radiance = Radiance.of(cells, interpolated.at(shown), surfaces.world)
             shown = replace(shown, gathered=look_again(transport, radiance, shown.gathered))

@@ -9,18 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .direct import LUMINANCE, Emitters, direct_irradiance
+from .direct import Emitters, direct_irradiance
 from .errors import UnsolvableError
 from .rows import ESCAPED, Cover, Shares
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
-from .transport import Transport, element_normals, sample_points
-
-BRIGHT = 10.0
-"""Times the mean radiance of all patches above which one is sampled explicitly, as emitters are."""
-
-MOST_BRIGHT_PATCHES = 512
+from .transport import Transport, sample_points
 
 POINTS_PER_PATCH = 4
 """Points of a patch at which direct light is computed for the transport."""
@@ -153,41 +148,6 @@ def seen_radiance(transport: Transport, balance: Balance, solution: Solution, em
     left = left_emission(transport.surfaces, emitters)
     values[balance.elements] = solution.reflected + left[transport.tree.triangle[balance.base >> 1]]
     return values
-
-
-def bright_patches(
-    transport: Transport, balance: Balance, solution: Solution, radiance: Floats
-) -> tuple[Emitters, Ints]:
-    """Patches that few rays would find, and much brighter than the rest, to be sampled as lights instead.
-
-    The ceiling above a lamp is a lamp itself: left to chance, it would streak whatever it lights.
-
-    Parameters
-    ----------
-    radiance : (elements, 3) float
-        What gather rays would see on each.
-
-    Returns
-    -------
-    The patches as emitters of one side, and their elements.
-    """
-    tree = transport.tree
-    luminance = solution.reflected @ LUMINANCE
-    mean = float((balance.areas * luminance).sum() / balance.areas.sum())
-    # What is buried or covered of a patch is out of sight for shadow rays too.
-    whole = balance.elements == balance.base
-    weight = np.where(whole & (luminance > BRIGHT * mean), balance.areas * luminance**2, 0.0)
-    count = min(int((weight > 0.0).sum()), MOST_BRIGHT_PATCHES)
-    chosen = np.sort(np.argsort(-weight, kind="stable")[:count])
-    elements = balance.elements[chosen]
-    return Emitters(
-        np.full(count, -1, dtype=np.int64),
-        tree.points[tree.corners[elements >> 1]],
-        element_normals(transport.surfaces, tree, elements),
-        balance.areas[chosen],
-        radiance[elements],
-        np.ones(count, dtype=bool),
-    ), elements
 
 
 def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:

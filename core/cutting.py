@@ -21,8 +21,11 @@ from .receivers import Receivers
 from .scene import Floats, Ints
 from .subdivision import Faces
 
-BISECTIONS = 10
-"""Halvings of an edge: the cut is found to a thousandth of it."""
+SECTIONS = 8
+"""Pieces that an edge is cut into at once to find where it is hidden: many places cost little more than one."""
+
+SEARCHES, ROUGH_SEARCHES = 3, 2
+"""Times that the piece found is searched again: the cut is found to a 1/512 of the edge, or to 1/64 of it."""
 
 MARGIN = 0.004
 """Share of the edge that receivers keep from the cut, on both sides: a few times what the bisection leaves open."""
@@ -62,7 +65,14 @@ class CutEdges:
 IsHidden = Callable[[Receivers], NDArray[np.bool_]]
 
 
-def find_cuts(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], is_hidden: IsHidden) -> CutEdges:
+def find_cuts(
+    faces: Faces,
+    places: Receivers,
+    hidden: NDArray[np.bool_],
+    is_hidden: IsHidden,
+    searches: int = SEARCHES,
+    among: NDArray[np.bool_] | None = None,
+) -> CutEdges:
     """Search the edges of the faces' fronts.
 
     Parameters
@@ -73,12 +83,17 @@ def find_cuts(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], is_hid
         Of the receivers.
     is_hidden : callable
         Tells the same of other receivers.
+    searches : int
+        Each cuts what the last one left open by `SECTIONS`.
+    among : (f,) bool or None
+        Faces whose edges are searched; None for all.
     """
     count = len(faces.triangle)
     receiver = places.of_corner[:count].ravel()
     following = np.roll(places.of_corner[:count], -1, axis=1).ravel()
     point, next_point = faces.corners.ravel(), np.roll(faces.corners, -1, axis=1).ravel()
-    broken = np.flatnonzero(hidden[receiver] != hidden[following])
+    wanted = hidden[receiver] != hidden[following]
+    broken = np.flatnonzero(wanted if among is None else wanted & np.repeat(among, 3))
     turned = hidden[receiver[broken]]
     pairs = np.stack(
         [
@@ -90,11 +105,18 @@ def find_cuts(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], is_hid
         axis=1,
     )
     start, end, seen, unseen = np.unique(pairs, axis=0).T
-    low, high = np.zeros(len(start)), np.ones(len(start))
-    for _ in range(BISECTIONS if len(start) else 0):
-        middle = (low + high) / 2.0
-        inside = is_hidden(_along(faces, places, CutEdges(start, end, seen, unseen, middle, middle), middle))
-        low, high = np.where(inside, low, middle), np.where(inside, middle, high)
+    count = len(start)
+    low, width = np.zeros(count), 1.0
+    inner = np.arange(1, SECTIONS) / SECTIONS
+    for _ in range(searches if count else 0):
+        share = (low[:, None] + width * inner).ravel()
+        each = np.repeat(np.arange(count), SECTIONS - 1)
+        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share)
+        inside = is_hidden(_along(faces, places, tried, share)).reshape(count, SECTIONS - 1)
+        # The first section whose end is hidden; the last one's end is known to be.
+        first = np.where(inside.any(axis=1), inside.argmax(axis=1), SECTIONS - 1)
+        low, width = low + first * width / SECTIONS, width / SECTIONS
+    high = low + width
     change = (low + high) / 2.0
     return CutEdges(start, end, seen, unseen, change, np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE))
 

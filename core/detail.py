@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .cutting import IsHidden, crooked_faces, find_cuts
+from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, find_cuts
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error, relative_error
 from .gather import Gathered, corner_values
@@ -125,26 +125,29 @@ def light_up_in_detail(
     tree = tree.copy()
     known = light_up(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at)
 
-    def split_by_error(known: Lit) -> Ints:
+    def split_by_error(known: Lit, first_new: int) -> Ints:
         return _nodes_to_split(surfaces, known, tree, sizes.smallest, tolerance)
 
-    def split_by_outline(known: Lit) -> Ints:
-        return _nodes_with_crooked_cuts(known, tree, sizes.smallest_cut, is_hidden)
+    def split_by_outline(known: Lit, first_new: int) -> Ints:
+        return _nodes_with_crooked_cuts(known, tree, sizes.smallest_cut, first_new, is_hidden)
 
     for nodes_to_split in (split_by_error, split_by_outline):
+        first_new = 0
         for _ in range(MOST_ROUNDS):
-            nodes = nodes_to_split(known)
+            nodes = nodes_to_split(known, first_new)
             if len(nodes) == 0 or len(known.places.points) > sizes.most_vertices:
                 break
+            first_new = len(tree)
             tree.split(nodes)
             known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
     return known, tree
 
 
-def _nodes_with_crooked_cuts(known: Lit, tree: PatchTree, smallest: float, is_hidden: IsHidden) -> Ints:
-    """Leaves that can be split and whose faces a straight cut does not fit."""
+def _nodes_with_crooked_cuts(known: Lit, tree: PatchTree, smallest: float, first_new: int, is_hidden: IsHidden) -> Ints:
+    """Leaves that can be split and whose faces a straight cut does not fit, among those made in the last round."""
     hidden = known.gathered.hidden
-    cuts = find_cuts(known.faces, known.places, hidden, is_hidden)
+    new = known.faces.node >= first_new
+    cuts = find_cuts(known.faces, known.places, hidden, is_hidden, ROUGH_SEARCHES, new)
     nodes = np.unique(known.faces.node[crooked_faces(known.faces, known.places, hidden, cuts, is_hidden)])
     return nodes[tree.sizes(nodes) >= 2.0 * smallest]
 

@@ -107,7 +107,7 @@ def gather(
     transport: Transport,
     cells: Cells,
     radiance: Radiance,
-    emitters: tuple[Emitters, ...],
+    emitters: Emitters,
     receivers: Receivers,
     counts: GatherRays,
     finest: float,
@@ -115,8 +115,6 @@ def gather(
     report: Callable[[float], None],
 ) -> Gathered:
     """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`.
-
-    Each set of emitters has its own shadow rays.
 
     Parameters
     ----------
@@ -144,7 +142,7 @@ def gather(
 
     parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise, hidden, places = (np.concatenate([p[k] for p in parts]) for k in range(4))
-    direct = sum((_direct(transport, each, receivers, counts, report) for each in emitters), np.zeros((total, 3)))
+    direct = _direct(transport, emitters, receivers, counts, report)
     return Gathered(means + direct, direct, noise, hidden, places)
 
 

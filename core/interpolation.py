@@ -40,8 +40,6 @@ class InterpolatedRadiance:
         What places show that lie on no face: meshes that are not baked, twins of covered elements.
     met : (n, r) int32
         What rays met: other places need no radiance.
-    keep : (places,) bool
-        Places that keep it as well.
     partly : (places,) bool
         Places on elements that are covered or inside a solid in part, whose radiosity is that of the rest.
     """
@@ -54,7 +52,6 @@ class InterpolatedRadiance:
         emission: Floats,
         solved: Floats,
         met: NDArray[np.int32],
-        keep: NDArray[np.bool_],
         partly: NDArray[np.bool_],
     ) -> None:
         self._tree, self._solved, self._copied = tree, solved, cells.copied
@@ -62,7 +59,7 @@ class InterpolatedRadiance:
         seen = np.zeros(len(solved), dtype=bool)
         seen[met[met >= 0]] = True
         seen[cells.copied] |= seen[len(solved) - len(cells.copied) :]
-        self._place: Ints = np.flatnonzero((seen & ~keep)[: 2 * len(leaf)])
+        self._place: Ints = np.flatnonzero(seen[: 2 * len(leaf)])
         cell = self._place >> 1
         self._side = 2 * leaf[cell] + (self._place & 1)
         self._whole = leaf[cell] == cells.element[self._place] >> 1

@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .rows import ESCAPED, Shares
-from .scene import Ints
+from .rows import Shares
+from .scene import Floats, Ints
 from .transport import Transport
 
 THRESHOLD_MET = "every form factor is below the threshold"
@@ -28,7 +28,7 @@ class Round:
     fragments : int
         Leaves at the start of the round.
     new_rows : int
-        Elements traced in it: only new receivers, and more rays for undecided ones.
+        Elements traced in it: only new receivers.
     rays : int
         Rays traced in it.
     split : int
@@ -99,7 +99,7 @@ def refine(
     while True:
         fragments, rays_before = len(tree.leaves()), transport.rays.rays
         rows = trace_all(transport, seeds, report)
-        flagged, largest, more = _flagged(transport, seeds, threshold, smallest, report)
+        flagged, largest = _flagged(transport, threshold, smallest)
         full = transport.kept_rays() + 4 * len(flagged) * transport.rays_per_row > most_rays
         if full:
             flagged = flagged[:0]
@@ -107,9 +107,7 @@ def refine(
         if len(flagged):
             tree.split(flagged)
             moved = transport.follow_splits()
-        rounds.append(
-            Round(fragments, rows + more, transport.rays.rays - rays_before, len(flagged), moved, float(largest))
-        )
+        rounds.append(Round(fragments, rows, transport.rays.rays - rays_before, len(flagged), moved, float(largest)))
         if len(flagged) == 0:
             ended = LIMIT_MET if full else _why_ended(transport, threshold)
             return Refinement(tuple(rounds), ended)
@@ -141,47 +139,44 @@ def refine_uniformly(
     return Refinement(tuple(rounds), ended)
 
 
-def _flagged(
-    transport: Transport, seeds: Seeds, threshold: float, smallest: float, report: Callable[[float], None]
-) -> tuple[Ints, float, int]:
-    """Leaves to split, the largest form factor to a leaf that may be, and the rows lengthened to decide."""
+def _flagged(transport: Transport, threshold: float, smallest: float) -> tuple[Ints, float]:
+    """Leaves to split, and the largest form factor to a leaf that may be."""
     tree = transport.tree
     splittable = np.zeros(len(tree), dtype=bool)
     leaves = tree.leaves()
     splittable[leaves] = tree.sizes(leaves) >= 2.0 * smallest
     if not splittable.any():
-        return np.zeros(0, dtype=np.int64), 0.0, 0
-    wanted = np.repeat(splittable, 2)
-    shares = transport.shares_to(wanted)
-    undecided = _undecided_receivers(transport, shares, threshold)
-    if len(undecided):
-        transport.lengthen(undecided, report)
-        trace_all(transport, seeds, report)
-        shares = transport.shares_to(wanted)
-    nodes = np.unique(shares.source[shares.share > threshold] >> 1)
-    return nodes, float(shares.share.max(initial=0.0)), len(undecided)
+        return np.zeros(0, dtype=np.int64), 0.0
+    highest = _highest_factors(transport, transport.shares_to(np.repeat(splittable, 2)), threshold)
+    return np.flatnonzero(highest > threshold), float(highest.max(initial=0.0))
 
 
-def _undecided_receivers(transport: Transport, shares: Shares, threshold: float) -> Ints:
-    """Receivers whose rays cannot tell yet whether some fragment must be split, and that may have more of them.
+def _highest_factors(transport: Transport, shares: Shares, threshold: float) -> Floats:
+    """The largest form factor from any element to each node, (nodes,).
 
-    A fragment is undecided while the largest form factor to it is within one standard error of the threshold: then the
-    receiver of that pair is asked for more rays.
+    The counted share of rays decides where it is more than its standard error away from the threshold. Where the rays
+    cannot tell, the pair that couples most strongly by its distance and angles is computed in closed form: rays have
+    met, so it is not hidden, and what hides a part of it makes the fragment one that is rather split.
     """
-    node = shares.source >> 1
     highest = np.zeros(len(transport.tree))
-    np.maximum.at(highest, node, shares.share)
-    strongest = np.flatnonzero(shares.share == highest[node])
-    error = shares.standard_error()[strongest]
-    unsure = strongest[np.abs(shares.share[strongest] - threshold) <= error]
-    receivers = np.unique(shares.receiver[unsure])
-    return receivers[~transport.has_long_row()[receivers]]
+    node = shares.source >> 1
+    error = shares.standard_error()
+    unsure = np.abs(shares.share - threshold) <= error
+    np.maximum.at(highest, node[~unsure], shares.share[~unsure])
+    unsure &= highest[node] <= threshold
+    receiver, source = shares.receiver[unsure], shares.source[unsure]
+    strength = transport.coupling(receiver, source)
+    # The strongest pair of each node comes last.
+    order = np.lexsort((receiver, strength, source >> 1))
+    last = order[np.flatnonzero(np.diff(source[order] >> 1, append=-1))]
+    exact = transport.unoccluded_factors(receiver[last], source[last])
+    np.maximum.at(highest, source[last] >> 1, exact)
+    return highest
 
 
 def _why_ended(transport: Transport, threshold: float) -> str:
-    shares = transport.shares()
-    above = (shares.source != ESCAPED) & (shares.share > threshold)
-    return SIZE_MET if above.any() else THRESHOLD_MET
+    shares = transport.shares_to(np.ones(2 * len(transport.tree), dtype=bool))
+    return SIZE_MET if (_highest_factors(transport, shares, threshold) > threshold).any() else THRESHOLD_MET
 
 
 def typical_standard_error(shares: Shares, threshold: float) -> float:

@@ -89,11 +89,11 @@ def _edge_middles(tree: PatchTree, corners: Ints) -> Ints:
 
 def _twice_halved(tree: PatchTree, corners: Ints, middles: Ints) -> NDArray[np.bool_]:
     """Whether half of an edge has a midpoint of its own, (m,) bool."""
-    present = middles >= 0
-    middle = np.where(present, middles, corners)
-    first = tree.midpoints(corners, middle) >= 0
-    second = tree.midpoints(middle, np.roll(corners, -1, axis=1)) >= 0
-    twice: NDArray[np.bool_] = np.any(present & (first | second), axis=1)
+    leaf, edge = np.nonzero(middles >= 0)
+    start, middle, end = corners[leaf, edge], middles[leaf, edge], corners[leaf, (edge + 1) % 3]
+    again = (tree.midpoints(start, middle) >= 0) | (tree.midpoints(middle, end) >= 0)
+    twice = np.zeros(len(corners), dtype=bool)
+    twice[leaf[again]] = True
     return twice
 
 

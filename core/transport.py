@@ -13,6 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .form_factors import point_to_triangle
 from .location import Locator
 from .patches import PatchTree
 from .reachability import side_normals
@@ -27,7 +28,10 @@ COVER_POINTS, COVER_RAYS, COVERED_RAYS = 16, 8, 7
 corner of a room three quarters."""
 
 LONG_ROW = 4
-"""Times more rays that an element is given when the first ones cannot tell whether a fragment must be split."""
+"""Times more rays that an element is given when most of its first ones started inside a solid."""
+
+POINTS_OF_A_FACTOR = 4
+"""Points of a receiver over which a form factor in closed form is averaged."""
 
 
 def element_normals(surfaces: Surfaces, tree: PatchTree, elements: Ints) -> Floats:
@@ -200,6 +204,30 @@ class Transport:
             self.tables[k] = table
             moved += len(stale)
         return moved
+
+    def coupling(self, receivers: Ints, sources: Ints) -> Floats:
+        """How strongly elements see each other by the distance and angles of their middles: an estimate, (p,).
+
+        It is the form factor to a small source of the same area, and stays below 1 where they touch.
+        """
+        tree = self.tree
+        middle = tree.points[tree.corners].mean(axis=1).astype(np.float32)
+        toward = middle[sources >> 1] - middle[receivers >> 1]
+        square = np.einsum("px,px->p", toward, toward)
+        a, b, c = (tree.points[tree.corners[sources >> 1, k]] for k in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+        cosines = [
+            np.abs(np.einsum("px,px->p", toward, element_normals(self.surfaces, tree, elements)))
+            for elements in (receivers, sources)
+        ]
+        result: Floats = cosines[0] * cosines[1] * area / (square * (np.pi * square + area))
+        return np.nan_to_num(result)
+
+    def unoccluded_factors(self, receivers: Ints, sources: Ints) -> Floats:
+        """Form factor from each receiver to each source as if nothing were in between, (p,)."""
+        points, normals = sample_points(self.surfaces, self.tree, receivers, POINTS_OF_A_FACTOR, self.seed + 21)
+        corners = self.tree.points[self.tree.corners[sources >> 1]]
+        return point_to_triangle(points, normals, corners[:, None]).mean(axis=1)
 
     def lengthen_buried(self, report: Callable[[float], None] = lambda share: None) -> None:
         """Trace more rays for elements most of whose rays started inside a solid: those left are too few to tell."""

@@ -9,7 +9,7 @@ under the block receives nothing.
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.cutting import BISECTIONS, LEAST_PIECE
+from radiosity_bake.core.cutting import LEAST_PIECE, SEARCHES, SECTIONS
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
 
@@ -69,16 +69,16 @@ def foot(request):
 def test_the_cut_follows_the_foot(foot):
     position = foot.corners[foot.is_cut]
     assert len(position) > 50
-    # An edge is at most 2 n long and the bisection leaves a thousandth of it open; a cut keeps LEAST_PIECE of an edge
+    # An edge is at most 2 n long and the search leaves 1/512 of it open; a cut keeps LEAST_PIECE of an edge
     # from its ends, so that the few that come closer are moved by up to that.
     off = np.abs(distance_to_foot(position))
-    assert np.percentile(off, 90) <= 2 * N * 2.0**-BISECTIONS
+    assert np.percentile(off, 90) <= 2 * N * SECTIONS**-SEARCHES
     assert off.max() <= 2 * N * LEAST_PIECE
 
 
 def test_the_cut_is_unbiased(foot):
     position = foot.corners[foot.is_cut]
-    assert abs(distance_to_foot(position).mean()) <= 2 * N * 2.0**-BISECTIONS
+    assert abs(distance_to_foot(position).mean()) <= 2 * N * SECTIONS**-SEARCHES
 
 
 def test_no_face_crosses_the_foot_away_from_its_corners(foot):
