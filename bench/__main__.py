@@ -19,7 +19,7 @@ from radiosity_bake.core.settings import QUALITIES, BakeSettings
 from . import form_factors, publish
 from .accuracy import compare
 from .machine import OUT, write_json
-from .measure import Judged, Measured, judged, measure
+from .measure import Judged, Measured, judged, measure, operator_costs
 from .methods import BENCH_SCENES, OURS, RULE, UNIFORM
 from .peers import runs_of
 from .remembered import answered
@@ -39,8 +39,11 @@ def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
     With a minimum size given, faces are not made finer where the light changes, so the form factors alone decide.
     """
     measure(case, BakeSettings(quality="DRAFT"))  # the first bake of a process also pays for loading libraries
+    whole = operator_costs(case, qualities)
     for quality in qualities:
-        yield baked(OURS, quality, measure(case, BakeSettings(quality=quality)))
+        entry = baked(OURS, quality, measure(case, BakeSettings(quality=quality)))
+        clocks = ("seconds", "processor_seconds")
+        yield {**entry, **{f"operator_{clock}": round(whole[quality][clock], 4) for clock in clocks}}
     for name, method in ((UNIFORM, "UNIFORM"), (RULE, "ADAPTIVE")):
         for patches in PATCHES:
             size = even_size(case.scene, patches)

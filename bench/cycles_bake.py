@@ -11,52 +11,12 @@ import os
 import sys
 import time
 from collections.abc import Mapping
-from typing import Any
 
 import bpy
 import numpy as np
+from blender_scene import make_object, set_world
 
 ATTRIBUTE = "Baked"
-
-
-def colour_material(name: str, reflectance: np.ndarray, emission: np.ndarray) -> Any:
-    """Return a diffuse material that also glows, as ours do."""
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    output, diffuse = tree.nodes.new("ShaderNodeOutputMaterial"), tree.nodes.new("ShaderNodeBsdfDiffuse")
-    diffuse.inputs["Color"].default_value = (*(float(c) for c in reflectance), 1.0)
-    shader = diffuse.outputs[0]
-    if np.any(emission > 0.0):
-        strength = float(emission.max())
-        glow, add = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeAddShader")
-        glow.inputs["Color"].default_value = (*(float(c) / strength for c in emission), 1.0)
-        glow.inputs["Strength"].default_value = strength
-        tree.links.new(add.inputs[0], shader)
-        tree.links.new(add.inputs[1], glow.outputs[0])
-        shader = add.outputs[0]
-    tree.links.new(output.inputs["Surface"], shader)
-    return material
-
-
-def make_object(arrays: Mapping[str, np.ndarray], k: int) -> Any:
-    """Return mesh `k` as an object of the scene, with a material for each pair of colours."""
-    mesh = bpy.data.meshes.new(f"mesh_{k}")
-    mesh.from_pydata(arrays[f"vertices_{k}"].tolist(), [], arrays[f"triangles_{k}"].tolist())
-    colours = np.concatenate([arrays[f"reflectance_{k}"], arrays[f"emission_{k}"]], axis=1)
-    kinds, of_triangle = np.unique(colours, axis=0, return_inverse=True)
-    for i, kind in enumerate(kinds):
-        mesh.materials.append(colour_material(f"material_{k}_{i}", kind[:3], kind[3:]))
-    mesh.polygons.foreach_set("material_index", of_triangle.ravel().astype(np.int32))
-    smooth = np.full(len(mesh.polygons), bool(arrays[f"smooth_{k}"]))
-    mesh.polygons.foreach_set("use_smooth", smooth)
-    mesh.color_attributes.new(ATTRIBUTE, "FLOAT_COLOR", "POINT")
-    mesh.color_attributes.active_color = mesh.color_attributes[ATTRIBUTE]
-    mesh.update()
-    thing = bpy.data.objects.new(f"object_{k}", mesh)
-    bpy.context.scene.collection.objects.link(thing)
-    return thing
 
 
 def set_up(arrays: Mapping[str, np.ndarray]) -> None:
@@ -75,11 +35,7 @@ def set_up(arrays: Mapping[str, np.ndarray]) -> None:
     scene.render.bake.use_pass_direct = scene.render.bake.use_pass_indirect = True
     scene.render.bake.use_pass_color = False
     scene.render.bake.target = "VERTEX_COLORS"
-    scene.world = bpy.data.worlds.new("World")
-    scene.world.use_nodes = True
-    background = scene.world.node_tree.nodes["Background"]
-    background.inputs["Color"].default_value = (*(float(c) for c in arrays["world"]), 1.0)
-    background.inputs["Strength"].default_value = 1.0
+    set_world(arrays["world"])
 
 
 def main(given: str, answered: str) -> None:
@@ -92,6 +48,9 @@ def main(given: str, answered: str) -> None:
     things = {k: make_object(arrays, k) for k in range(count)}
     wanted = [k for k in things if bool(arrays[f"baked_{k}"])]
     for k, thing in things.items():
+        mesh = thing.data
+        mesh.color_attributes.new(ATTRIBUTE, "FLOAT_COLOR", "POINT")
+        mesh.color_attributes.active_color = mesh.color_attributes[ATTRIBUTE]
         thing.select_set(k in wanted)
     bpy.context.view_layer.objects.active = things[wanted[0]]
     start, used = time.perf_counter(), sum(os.times()[:2])

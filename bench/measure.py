@@ -4,10 +4,17 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.result import BakeResult
 from radiosity_bake.core.scene import Scene
@@ -30,6 +37,9 @@ REFERENCE_PARTS = {
     "pillar_hall": 7,
 }
 """Parts of the reference that bring its noise below 0.5% RMS; `python -m bench.references` prints it."""
+
+FLAT = 1e-6
+"""Corner normals of a triangle that differ by no more than this are those of a flat one."""
 
 BRIGHT_PARTS = {"cornell_box_hung": 512}
 """The same for points far brighter than the mean."""
@@ -79,6 +89,23 @@ def judged(name: str, probes: int = 4000, parts: int = 0) -> Judged:
     bright = 0 if parts else BRIGHT_PARTS.get(name, 0)
     truth = converged(scene, points.position, points.normal, points.shading_normal, wanted, bright)
     return Judged(name, scene, points, truth)
+
+
+def operator_costs(case: Judged, qualities: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Return what Blender's operator took for each quality, from mesh to mesh, and what it counted."""
+    arrays: dict[str, np.ndarray] = {"world": case.scene.world}
+    for k, mesh in enumerate(case.scene.meshes):
+        arrays[f"vertices_{k}"], arrays[f"triangles_{k}"] = mesh.vertices, mesh.triangles
+        arrays[f"reflectance_{k}"], arrays[f"emission_{k}"] = mesh.reflectance, mesh.emission
+        normals = mesh.corner_normals
+        arrays[f"smooth_{k}"] = np.any(np.abs(normals - normals[:, :1]) > FLAT, axis=(1, 2))
+    with tempfile.TemporaryDirectory() as folder:
+        given = Path(folder) / "scene.npz"
+        np.savez(given, **arrays)
+        script = Path(__file__).with_name("operator_bake.py")
+        command = [sys.executable, str(script), str(given), *qualities]
+        done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
+    return {found["quality"]: found for found in json.loads(done.stdout.splitlines()[-1])}
 
 
 def measure(case: Judged, settings: BakeSettings) -> Measured:

@@ -14,7 +14,8 @@ from .methods import BENCH_SCENES
 Document = dict[str, Any]
 Entry = dict[str, Any]
 
-KEPT = ("method", "setting", "seconds", "processor_seconds", "others", "points", "patches", "rays", "run")
+KEPT = ("method", "setting", "seconds", "processor_seconds", "operator_seconds", "operator_processor_seconds", "others")
+KEPT += ("points", "patches", "rays", "run")
 
 
 def collect(out: Path) -> Document:
