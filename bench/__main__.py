@@ -36,7 +36,8 @@ Entry = dict[str, Any]
 def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
     """Yield our bakes: each quality as a user has it; uniform, and by the paper's rule alone, at several sizes.
 
-    With a minimum size given, faces are not made finer where the light changes, so the form factors alone decide.
+    With a minimum size given, no face is made finer than it: form factors decide, and the light only where they left
+    faces of twice the size.
     """
     measure(case, BakeSettings(quality="DRAFT"))  # the first bake of a process also pays for loading libraries
     whole = operator_costs(case, qualities)

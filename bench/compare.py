@@ -3,7 +3,8 @@
 """Adaptive against uniform subdivision at the same minimum size and threshold: `python -m bench.compare`.
 
 The table of Kulyasov & Nikulin (2010), ours: its three scenes, four minimum sizes each, every one half of the last.
-Both methods do the same with the fragments that they end with, so the time is that of the whole picture, as there.
+The time is that of the whole picture, as there: both methods light the fragments that they end with in the same way,
+and neither makes a face finer than the minimum size.
 Writes `out/compare.txt` and `out/compare.json`, and pictures of both subdivisions and of the baked scenes to
 `out/images` and, of a whole run, to `docs/images`.
 """

@@ -467,10 +467,10 @@ def paper_table(measured: Document) -> Lines:
         *paragraph(
             "Kulyasov & Nikulin's Table 1 on our scenes after its own: uniform / adaptive subdivision at the same "
             f"minimum size, threshold {measured['threshold']:g}, quality {measured['quality']}; measured "
-            f"{measured['run'][:10]} by `make compare`. Both methods do the same with the fragments that they end "
-            "with. *Gain*: of the time of the whole picture, by wall clock and, in brackets, by processor time; every "
-            f"row should be positive, and the finest of each scene above {finest}. *Stage*: where adaptive loses most, "
-            "as a share of uniform's time."
+            f"{measured['run'][:10]} by `make compare`. Both light the fragments that they end with in the same way, "
+            f"and neither makes a face finer than the minimum size. *Gain*: of the time of the whole picture, by wall "
+            f"clock and, in brackets, by processor time; every row should be positive, and the finest of each scene "
+            f"above {finest}. *Stage*: where adaptive loses most, as a share of uniform's time."
         ),
         "",
         *table((*header, "fewer fragments", "gain", "met", "stage"), rows),

@@ -40,7 +40,8 @@ WARM_UP = 64
 # Patches of the uniform meshes whose vertices are computed, about: coarse and fine.
 COARSE, FINE = 4_000, 16_000
 
-# Samples of all vertices together above which Cycles is not asked: it would take minutes.
+# Samples of all vertices together above which a program is not asked: it would take minutes.
+MOST_MITSUBA_SAMPLES = 14_000_000
 MOST_CYCLES_SAMPLES = 2_500_000
 
 # A vertex is moved by this share of the way towards the middle of its triangles: on a border, in the plane of the next
@@ -344,6 +345,7 @@ def runs_of(case: Judged, wanted: Callable[[str], bool]) -> list[Run]:
                 lambda c, n=n, p=p: mitsuba_to_vertices(c, n, p),
             )
             for p, n in ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256), (FINE, 1024))
+            if n * uniform_mesh(case.name, p).points <= MOST_MITSUBA_SAMPLES
         ]
     if wanted("radiance"):
         runs += [
