@@ -36,7 +36,7 @@ LARGEST_ERROR = {"GOOD": 0.02, "HIGH": 0.01}
 # Times fewer vertices than uniform subdivision at equal error.
 FEWER_VERTICES = 4.0
 
-# Share of a bake's processor time inside the ray library.
+# Share of a bake's time, of all cores, inside the ray library.
 RAY_SHARE = 0.5
 
 # The estimated error over the true one: a bound, and not too pessimistic a one.
