@@ -21,14 +21,17 @@ from .accuracy import compare
 from .machine import OUT, write_json
 from .measure import Judged, Measured, judged, measure, operator_costs
 from .methods import BENCH_SCENES, OURS, RULE, UNIFORM
-from .peers import runs_of
-from .remembered import answered
+from .peers import Run, runs_of
+from .remembered import Remembered, answered
 from .scenes import SCENES, even_size
 
 PEERS = ("mitsuba", "radiance", "cycles")
 
 # Patches that a scene, cut evenly, has about at the minimum sizes of the two methods that take one.
 PATCHES = (1_000, 4_000, 16_000, 64_000)
+
+# A peer that took longer is not asked for its dearer settings on that scene.
+MOST_PROCESSOR_SECONDS = 60.0
 
 Entry = dict[str, Any]
 
@@ -68,8 +71,7 @@ def baked(method: str, setting: str, measured: Measured) -> Entry:
 
 def theirs(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Iterator[Entry]:
     """Yield what the peers give at each of their settings, from disk where it is known and not asked `fresh`."""
-    for asked in runs_of(case, peers.__contains__):
-        known = answered(case, asked, run, fresh)
+    for asked, known in affordable(case, peers, run, fresh):
         answer = known.answer
         yield {
             "method": asked.method,
@@ -79,6 +81,18 @@ def theirs(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Itera
             "accuracy": compare(case.scene, case.probes, answer.irradiance, case.reference).as_json(),
             "run": known.run,
         }
+
+
+def affordable(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Iterator[tuple[Run, Remembered]]:
+    """Yield the answers of the peers, each cheapest setting first, until one was too dear."""
+    dear = set()
+    for asked in runs_of(case, peers.__contains__):
+        if asked.method in dear:
+            continue
+        known = answered(case, asked, run, fresh)
+        yield asked, known
+        if known.answer.cost.processor_seconds > MOST_PROCESSOR_SECONDS:
+            dear.add(asked.method)
 
 
 def measure_scene(name: str, asked: argparse.Namespace, run: str) -> None:
