@@ -23,7 +23,7 @@ from .balance import (
 from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import IsHidden, cut_faces, cut_receivers, find_cuts
-from .detail import FaceSizes, GatherAt, Lit, light_up, light_up_in_detail
+from .detail import FaceSizes, GatherAt, Lit, Sides, light_up, light_up_in_detail
 from .direct import strongest_emitters
 from .errors import NoLightError
 from .gather import Gathered, GatherRays, gather, hidden_receivers, look_again
@@ -172,6 +172,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         cover,
         COVER_GAP * rays.scale * finest,
     )
+    sides = Sides(lit, transport.enclosed_shells())
     seen = seen_radiance(transport, balance, solution, emitters)
     radiance = Radiance.of(cells, seen[cells.element], surfaces.world)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
@@ -184,16 +185,17 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
     if settings.output == "ORIGINAL":
-        shown, leaves = light_up(surfaces, lit, input_faces(surfaces), gather_at), PatchTree(surfaces)
+        shown, leaves = light_up(surfaces, sides, input_faces(surfaces), gather_at), PatchTree(surfaces)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
-        shown, leaves = light_up_in_detail(surfaces, lit, tree, sizes, effort.tolerance, gather_at, is_hidden)
+        shown, leaves = light_up_in_detail(surfaces, sides, tree, sizes, effort.tolerance, gather_at, is_hidden)
 
     if shown.gathered.places.shape[1] and settings.output == "REFINED":
         left = left_emission(surfaces, emitters)
-        partly = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
+        aside = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
+        aside |= transport.is_enclosed(cells.element, sides.enclosed)
         solved, met = seen[cells.element], shown.gathered.places
-        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, solved, met, partly)
+        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, solved, met, aside)
         for _ in range(LOOKS):
             radiance = Radiance.of(cells, interpolated.at(shown), surfaces.world)
             shown = replace(shown, gathered=look_again(transport, radiance, shown.gathered))

@@ -37,6 +37,8 @@ class Lit:
     faces : Faces
     face, side : (f,) int
         Faces and sides (1: the back) with values: all fronts in order, then some backs.
+    enclosed : (f,) bool
+        Those inside a closed mesh that see nothing but the same inside: what glows there is not looked at closely.
     places : Receivers
         `of_corner` has a row for each face side.
     gathered : Gathered
@@ -46,6 +48,7 @@ class Lit:
     faces: Faces
     face: Ints
     side: Ints
+    enclosed: NDArray[np.bool_]
     places: Receivers
     gathered: Gathered
 
@@ -54,10 +57,10 @@ class Lit:
         return corner_values(self.gathered, self.places.of_corner)
 
     def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
-        """Face sides whose error counts: neither emitters nor hidden altogether, (f,)."""
+        """Face sides whose error counts: neither emitters nor enclosed, nor hidden altogether, (f,)."""
         dark = np.all(surfaces.emission[self.faces.triangle[self.face]] == 0.0, axis=1)
         shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
-        return dark & shown
+        return dark & shown & ~self.enclosed
 
     def error(self, surfaces: Surfaces) -> float:
         """Estimated RMS error over the surface, relative to its mean."""
@@ -86,19 +89,35 @@ class FaceSizes:
     most_vertices: int
 
 
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """What is known of the sides of shells.
+
+    Attributes
+    ----------
+    lit : (shells, 2) bool
+        Front and back: whether light reaches them.
+    enclosed : (shells,) bool
+        Closed shells whose insides see nothing else, and whose fronts are seen.
+    """
+
+    lit: NDArray[np.bool_]
+    enclosed: NDArray[np.bool_]
+
+
 GatherAt = Callable[[Receivers], Gathered]
 
 
-def light_up(surfaces: Surfaces, lit_sides: NDArray[np.bool_], faces: Faces, gather_at: GatherAt) -> Lit:
+def light_up(surfaces: Surfaces, sides: Sides, faces: Faces, gather_at: GatherAt) -> Lit:
     """Gather light at all corners of faces as they are."""
-    face, side = _wanted_sides(faces, surfaces, lit_sides)
+    face, side, enclosed = _wanted_sides(faces, surfaces, sides)
     places = receivers(surfaces, faces, face, side)
-    return Lit(faces, face, side, places, gather_at(places))
+    return Lit(faces, face, side, enclosed, places, gather_at(places))
 
 
 def light_up_in_detail(
     surfaces: Surfaces,
-    lit_sides: NDArray[np.bool_],
+    sides: Sides,
     tree: PatchTree,
     sizes: FaceSizes,
     tolerance: float,
@@ -109,7 +128,7 @@ def light_up_in_detail(
 
     Parameters
     ----------
-    lit_sides : (shells, 2) bool
+    sides : Sides
     tree : PatchTree
         The patches to begin with; not changed.
     sizes : FaceSizes
@@ -123,7 +142,7 @@ def light_up_in_detail(
     The faces and their light, and the tree whose leaves they lie in.
     """
     tree = tree.copy()
-    known = light_up(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at)
+    known = light_up(surfaces, sides, conforming_faces(surfaces, tree), gather_at)
 
     def split_by_error(known: Lit, first_new: int) -> Ints:
         return _nodes_to_split(surfaces, known, tree, sizes.smallest, tolerance)
@@ -139,7 +158,7 @@ def light_up_in_detail(
                 break
             first_new = len(tree)
             tree.split(nodes)
-            known = _updated(surfaces, lit_sides, conforming_faces(surfaces, tree), gather_at, known)
+            known = _updated(surfaces, sides, conforming_faces(surfaces, tree), gather_at, known)
     return known, tree
 
 
@@ -152,23 +171,25 @@ def _nodes_with_crooked_cuts(known: Lit, tree: PatchTree, smallest: float, first
     return nodes[tree.sizes(nodes) >= 2.0 * smallest]
 
 
-def _wanted_sides(faces: Faces, surfaces: Surfaces, lit_sides: NDArray[np.bool_]) -> tuple[Ints, Ints]:
-    """Faces and sides that get values: every front, and the backs that light reaches, both (f,)."""
+def _wanted_sides(faces: Faces, surfaces: Surfaces, sides: Sides) -> tuple[Ints, Ints, NDArray[np.bool_]]:
+    """Faces and sides that get values, every front and the backs that light reaches, and which are enclosed; (f,)."""
     count = len(faces.triangle)
-    behind = np.flatnonzero(lit_sides[surfaces.shell_of_triangle[faces.triangle], 1])
+    shell = surfaces.shell_of_triangle[faces.triangle]
+    behind = np.flatnonzero(sides.lit[shell, 1])
     face = np.concatenate([np.arange(count), behind])
-    return face, np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
+    side = np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
+    return face, side, (side == 1) & sides.enclosed[shell[face]]
 
 
-def _updated(surfaces: Surfaces, lit_sides: NDArray[np.bool_], faces: Faces, gather_at: GatherAt, known: Lit) -> Lit:
+def _updated(surfaces: Surfaces, sides: Sides, faces: Faces, gather_at: GatherAt, known: Lit) -> Lit:
     """Gather at the receivers that `known` has not, and take the others from it."""
-    face, side = _wanted_sides(faces, surfaces, lit_sides)
+    face, side, enclosed = _wanted_sides(faces, surfaces, sides)
     places = receivers(surfaces, faces, face, side)
     old = known.places
     place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
     missing = np.flatnonzero(old.codes[place] != places.codes)
     new = gather_at(places.taken(missing))
-    return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing))
+    return Lit(faces, face, side, enclosed, places, known.gathered.with_more(place, new, missing))
 
 
 def _nodes_to_split(surfaces: Surfaces, known: Lit, tree: PatchTree, smallest: float, tolerance: float) -> Ints:

@@ -40,8 +40,9 @@ class InterpolatedRadiance:
         What places show that lie on no face: meshes that are not baked, twins of covered elements.
     met : (n, r) int32
         What rays met: other places need no radiance.
-    partly : (places,) bool
-        Places on elements that are covered or inside a solid in part, whose radiosity is that of the rest.
+    aside : (places,) bool
+        Places that say nothing of the power that the vertices' light should have: on elements that are covered or
+        inside a solid in part, whose radiosity is that of the rest, and on enclosed ones.
     """
 
     def __init__(
@@ -52,7 +53,7 @@ class InterpolatedRadiance:
         emission: Floats,
         solved: Floats,
         met: NDArray[np.int32],
-        partly: NDArray[np.bool_],
+        aside: NDArray[np.bool_],
     ) -> None:
         self._tree, self._solved, self._copied = tree, solved, cells.copied
         leaf, weights = tree.descend(cells.node, cells.centre)
@@ -64,7 +65,7 @@ class InterpolatedRadiance:
         self._side = 2 * leaf[cell] + (self._place & 1)
         self._whole = leaf[cell] == cells.element[self._place] >> 1
         self._areas = cells.areas[cell]
-        self._open = ~partly[self._place]
+        self._open = ~aside[self._place]
         u, v = weights[cell, 0], weights[cell, 1]
         self._shares = [np.asarray(share, dtype=np.float32)[:, None] for share in (1.0 - u - v, u, v)]
         triangle = tree.triangle[leaf[cell]]

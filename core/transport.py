@@ -30,6 +30,9 @@ corner of a room three quarters."""
 LONG_ROW = 4
 """Times more rays that an element is given when most of its first ones started inside a solid."""
 
+LEAKING = 0.01
+"""Share of the rays inside a closed shell that may slip out along its edges."""
+
 POINTS_OF_A_FACTOR = 4
 """Points of a receiver over which a form factor in closed form is averaged."""
 
@@ -294,6 +297,38 @@ class Transport:
 
         parts = self.rays.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
         return np.concatenate([np.zeros((0, COVER_POINTS), dtype=bool), *parts])
+
+    def enclosed_shells(self) -> NDArray[np.bool_]:
+        """Closed shells whose insides see nothing but themselves, while others see their fronts, (shells,).
+
+        The housing of a lamp is one: emitters glow on both sides, and nobody will ever look.
+        """
+        surfaces, tree = self.surfaces, self.tree
+        side = 2 * np.repeat(surfaces.shell_of_triangle[tree.triangle], 2) + np.arange(2 * len(tree)) % 2
+        twins = np.zeros(0, dtype=np.int64) if self.cover is None else side[self.cover.element]
+        # The last two places take the hits that are no elements.
+        nothing = 2 * len(surfaces.closed)
+        side = np.concatenate([side, twins, [nothing, nothing]]).astype(np.int32)
+        outward, all_rays = np.zeros(nothing + 1), np.zeros(nothing + 1)
+        seen = np.zeros(nothing + 1, dtype=bool)
+        for table in self.tables:
+            met, own = side[table.hits], side[table.element]
+            other = (met != own[:, None]) & (table.hits != BURIED)
+            outward += np.bincount(own, weights=other.sum(axis=1), minlength=nothing + 1)
+            all_rays += np.bincount(own, weights=table.valid, minlength=nothing + 1)
+            seen[met[other]] = True
+        looks_out = outward > LEAKING * all_rays
+        return surfaces.closed & ~looks_out[1:nothing:2] & seen[:nothing:2]
+
+    def is_enclosed(self, elements: Ints, shells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether elements or twins are the insides of such shells (shells,), (n,)."""
+        base = np.arange(2 * len(self.tree))
+        if self.cover is not None:
+            base = np.concatenate([base, self.cover.element])
+        element = base[elements]
+        shell = self.surfaces.shell_of_triangle[self.tree.triangle[element >> 1]]
+        result: NDArray[np.bool_] = shells[shell] & (element % 2 == 1)
+        return result
 
     def shares(self) -> Shares:
         """Form factors of all pairs from the rows as they are; those of twins from their short rays."""
