@@ -84,12 +84,12 @@ def one_chart(pyplot: Any, scenes: Sequence[Document]) -> Any:
         axes.set_title(title(scene["scene"]), loc="left", fontweight="bold")
     for axes in flat[len(scenes) :]:
         axes.axis("off")
-    handles, labels = flat[0].get_legend_handles_labels()
-    if len(flat) > len(scenes):
-        flat[-1].legend(handles, labels, loc="center left", frameon=False)
+    beside = len(flat) > len(scenes)
+    if beside:
+        flat[-1].legend(*flat[0].get_legend_handles_labels(), loc="center left", frameon=False)
     else:
         legend(figure, flat[0])
-    figure.tight_layout()
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 if beside else 1.0 - 0.6 / figure.get_figheight()))
     return figure
 
 

@@ -9,9 +9,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
-# Beyond its best setting a program is granted that its error falls as one over the square root of its cost, as that of
-# any sampling does; where interpolation on its mesh decides, it falls more slowly, and the cost given is too small.
-GRANTED_SLOPE = -0.5
+# Beyond its best setting a program is granted that its error falls as one over the square root of its time, as that of
+# any sampling does, or as one over its vertices, as that of linear interpolation does where all is smooth; where
+# shadows have borders it falls more slowly, and the cost given is too small.
+BY_TIME = -0.5
+BY_VERTICES = -1.0
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class AtError:
     ----------
     cost : float
     kind : str
-        `"between"` two settings; `"beyond"` the best one, by `GRANTED_SLOPE`; `"below"` the cheapest one, whose cost
+        `"between"` two settings; `"beyond"` the best one, by the slope granted; `"below"` the cheapest one, whose cost
         this is.
     """
 
@@ -39,8 +41,14 @@ def improving(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]
     return best
 
 
-def cost_at(points: Iterable[tuple[float, float]], error: float) -> AtError | None:
-    """Return what `error` costs a program whose settings have these (cost, error); None without settings."""
+def cost_at(points: Iterable[tuple[float, float]], error: float, slope: float = BY_TIME) -> AtError | None:
+    """Return what `error` costs a program whose settings have these (cost, error); None without settings.
+
+    Parameters
+    ----------
+    slope : float
+        Power of the cost by which the error is granted to fall beyond the best setting.
+    """
     steps = improving(points)
     if not steps:
         return None
@@ -51,4 +59,4 @@ def cost_at(points: Iterable[tuple[float, float]], error: float) -> AtError | No
             share = math.log(error / error_a) / math.log(error_b / error_a)
             return AtError(cost_a * (cost_b / cost_a) ** share, "between")
     cost, last = steps[-1]
-    return AtError(cost * (error / last) ** (1.0 / GRANTED_SLOPE), "beyond")
+    return AtError(cost * (error / last) ** (1.0 / slope), "beyond")

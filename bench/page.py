@@ -8,7 +8,7 @@ import math
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from .convergence import AtError, cost_at
+from .convergence import BY_VERTICES, AtError, cost_at
 from .methods import (
     ESTIMATE_OVER_TRUTH,
     FASTER_ELSEWHERE,
@@ -261,7 +261,7 @@ def fewer_vertices(scene: Document, quality: str) -> AtError | None:
     own = [entry for entry in of_method(scene, OURS) if entry["setting"] == quality]
     if not own or own[0]["rms"] <= 0.0:
         return None
-    theirs = cost_at(pairs(of_method(scene, UNIFORM), "points"), own[0]["rms"])
+    theirs = cost_at(pairs(of_method(scene, UNIFORM), "points"), own[0]["rms"], BY_VERTICES)
     return AtError(theirs.cost / own[0]["points"], theirs.kind) if theirs else None
 
 
@@ -323,8 +323,8 @@ def vertices(document: Document) -> Lines:
         "## Vertices at equal error",
         "",
         *paragraph(
-            "The vertices of uniform subdivision for the error that our bake has, divided by ours; signs as above. "
-            f"The goal is {FEWER_VERTICES:g}."
+            "The vertices of uniform subdivision for the error that our bake has, divided by ours. ≥: beyond the "
+            f"finest one, the error is granted to fall as one over the vertices. The goal is {FEWER_VERTICES:g}."
         ),
         "",
         *table(("scene", "error", "our vertices", "uniform over ours"), rows),

@@ -335,7 +335,7 @@ def runs_of(case: Judged, wanted: Callable[[str], bool]) -> list[Run]:
     if wanted("mitsuba"):
         runs += [
             Run("mitsuba", "Mitsuba 3 at the probes", f"{n} samples", lambda c, n=n: mitsuba(c, n))
-            for n in (16, 64, 256, 1024)
+            for n in (16, 64, 256, 1024, 4096)
         ]
         runs += [
             Run(
