@@ -5,40 +5,31 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import refinement
-from .balance import (
-    balance_of,
-    check_solved,
-    direct_on_patches,
-    energy,
-    left_emission,
-    seen_radiance,
-)
+from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
-from .cutting import IsHidden, cut_faces, cut_receivers, find_cuts
-from .detail import FaceSizes, GatherAt, Lit, Sides, light_up, light_up_in_detail
+from .cutting import cut_receivers, find_cuts
+from .detail import FaceSizes, Sides, light_up, light_up_in_detail
 from .direct import strongest_emitters
-from .errors import NoLightError
-from .gather import Gathered, GatherRays, gather, hidden_receivers, look_again
-from .interpolation import InterpolatedRadiance
-from .output import baked_meshes
+from .gather import Gathered, GatherRays, gather, hidden_receivers
+from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
 from .patches import PatchTree, coarse_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
+from .relight import KeptTransport, NotKept, keep, shapes_of
 from .result import BakeResult
 from .rows import BYTES_PER_RAY, COVER_GAP
-from .scene import Floats, Ints, Scene
+from .scene import Ints, Scene
 from .settings import BakeSettings
-from .solve import Solution, solve_balance
-from .subdivision import Faces, input_faces
+from .subdivision import input_faces
 from .surfaces import Surfaces, join
 from .transport import Transport
 from .visibility import RayScene
@@ -85,18 +76,11 @@ WORKING_COPIES = 6
 CELLS_ALONG_PATCH = 4.0
 """Cells along the edge of the smallest patch, in which what rays look up is interpolated."""
 
-LOOKS = 2
-"""Times that gather rays are looked up again in the light of the vertices: each is one more bounce on the finest mesh,
-and a third changes less than the rays' noise."""
-
 BYTES_PER_PLACE = 4
 """Kept for every gather ray: the place it met."""
 
 RAYS_TO_FIND_CUTS = 16
 """Rays that tell whether a place on an edge is hidden."""
-
-LARGEST_IMBALANCE = 0.03
-"""Share of the power that may be missing, or too much, before the report warns of it."""
 
 ROUND_SHARE = 0.15
 """Share of the remaining progress that one batch of traced rows stands for."""
@@ -120,17 +104,25 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     Cancelled
         When `progress` raised it.
     """
+    return bake_and_keep(scene, settings, progress)[0]
+
+
+def bake_and_keep(
+    scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress
+) -> tuple[BakeResult, KeptTransport | NotKept]:
+    """As `bake`, and give back what `relight` needs to do it again with other colours."""
     clock = Clock(progress)
 
     clock.start("Preparing", 0.0, 0.02)
     surfaces = join(scene)
-    if not (surfaces.emission.any() or surfaces.world.any()):
-        raise NoLightError("Nothing in the scene emits light; give a material some Emission, or the World a colour")
+    check_light(surfaces)
     with closing(RayScene(surfaces.points, surfaces.triangles, settings.threads)) as rays:
         return _bake(scene, surfaces, rays, settings, clock)
 
 
-def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettings, clock: Clock) -> BakeResult:
+def _bake(
+    scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettings, clock: Clock
+) -> tuple[BakeResult, KeptTransport | NotKept]:
     effort = EFFORTS[settings.quality]
     lit = lit_sides(surfaces, rays, settings.seed)
 
@@ -159,11 +151,6 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     emitters = strongest_emitters(surfaces, lit)
     balance = balance_of(transport, cover, shares)
     direct = direct_on_patches(transport, cover, balance, emitters, clock.report)
-    solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas)
-    check_solved(solution, surfaces)
-    traced = rays.rays
-
-    clock.start("Gathering", 0.5, 0.95)
     cells = Cells(
         tree,
         transport.locator,
@@ -173,8 +160,14 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         COVER_GAP * rays.scale * finest,
     )
     sides = Sides(lit, transport.enclosed_shells())
-    seen = seen_radiance(transport, balance, solution, emitters)
-    radiance = Radiance.of(cells, seen[cells.element], surfaces.world)
+    aside = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
+    aside |= transport.is_enclosed(cells.element, sides.enclosed)
+    patches = TracedPatches(len(tree), balance, emitters, direct, cells, aside)
+    light = light_of_patches(patches, surfaces)
+    traced = rays.rays
+
+    clock.start("Gathering", 0.5, 0.95)
+    radiance = Radiance.of(cells, light.seen, surfaces.world)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
     most_kept = settings.memory_limit * 2**20 // (2 * BYTES_PER_PLACE)
 
@@ -184,38 +177,23 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
+    cuts = None
     if settings.output == "ORIGINAL":
         shown, leaves = light_up(surfaces, sides, input_faces(surfaces), gather_at), PatchTree(surfaces)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
         shown, leaves = light_up_in_detail(surfaces, sides, tree, sizes, effort.tolerance, gather_at, is_hidden)
-
-    if shown.gathered.places.shape[1] and settings.output == "REFINED":
-        left = left_emission(surfaces, emitters)
-        aside = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
-        aside |= transport.is_enclosed(cells.element, sides.enclosed)
-        solved, met = seen[cells.element], shown.gathered.places
-        interpolated = InterpolatedRadiance(cells, leaves, surfaces, left, solved, met, aside)
-        for _ in range(LOOKS):
-            radiance = Radiance.of(cells, interpolated.at(shown), surfaces.world)
-            shown = replace(shown, gathered=look_again(transport, radiance, shown.gathered))
-
-    if settings.output == "ORIGINAL":
-        faces, face, irradiance = shown.faces, shown.face, shown.corner_irradiance()
-    else:
+        if shown.gathered.places.shape[1]:
+            shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, leaves)
         clock.start("Cutting", 0.95, 0.98)
-        faces, face, irradiance = cut_where_hidden(gather_at, is_hidden, shown)
-
-    crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
+        edges = find_cuts(shown.faces, shown.places, shown.gathered.hidden, is_hidden)
+        cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
 
     clock.start("Reconstructing", 0.98, 1.0)
-    meshes, warnings = baked_meshes(scene, surfaces, lit, faces, face, irradiance, settings.output)
-    clock.stop()
-    balance_sheet = energy(balance, solution, surfaces)
-    told: dict[str, Any] = {
+    crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
+    counts: dict[str, Any] = {
+        "relit": False,
         "patches": len(tree.leaves()),
-        "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
-        "triangles": sum(len(mesh.triangles) for mesh in meshes),
         "rays": rays.rays,
         "rays_by_kind": {
             "walks": walked,
@@ -223,27 +201,16 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             "patches": traced - walked - rays_of_rows,
             "gather": rays.rays - traced,
         },
-        "seconds": clock.seconds,
         "seconds_in_ray_library": rays.seconds,
-        "iterations": solution.iterations,
-        "residual": solution.residual,
-        "converged": solution.converged,
-        "estimated_error": shown.error(surfaces),
         "form_factor_standard_error": refinement.typical_standard_error(shares, settings.threshold),
-        "energy": balance_sheet,
         "minimum_size": smallest,
         "minimum_face_size": finest if settings.output == "REFINED" else None,
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
-        "settings": asdict(settings),
-        "warnings": [
-            *surfaces.warnings,
-            *warnings,
-            *limit_warnings(rounds, solution, per_row, effort, crowded),
-            *imbalance_warnings(balance_sheet),
-        ],
     }
-    return BakeResult(meshes, told)
+    story = Story(settings, counts, limit_warnings(rounds, per_row, effort, crowded))
+    kept = keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, leaves, cuts, story))
+    return result_of(scene, surfaces, lit, patches, light.solution, shown, cuts, story, clock), kept
 
 
 def automatic_size(surfaces: Surfaces, effort: Effort) -> float:
@@ -291,19 +258,9 @@ def subdivide(
     return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report)
 
 
-def cut_where_hidden(gather_at: GatherAt, is_hidden: IsHidden, shown: Lit) -> tuple[Faces, Ints, Floats]:
-    """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
-    count, hidden = len(shown.faces.triangle), shown.gathered.hidden
-    cuts = find_cuts(shown.faces, shown.places, hidden, is_hidden)
-    before, after = (gather_at(where).irradiance for where in cut_receivers(shown.faces, shown.places, cuts))
-    fronts = shown.gathered.irradiance[shown.places.of_corner[:count]]
-    values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
-    return cut_faces(shown.faces, shown.face, shown.places, hidden, cuts, values, before, after)
-
-
 def limit_warnings(
-    rounds: refinement.Refinement, solution: Solution, rays_per_patch: int, effort: Effort, crowded: bool
-) -> list[str]:
+    rounds: refinement.Refinement, rays_per_patch: int, effort: Effort, crowded: bool
+) -> tuple[str, ...]:
     """Sentences on limits that the bake ran into."""
     warnings = []
     if rounds.ended == refinement.LIMIT_MET:
@@ -312,18 +269,6 @@ def limit_warnings(
         warnings.append(
             f"For the memory limit or the number of triangles, each patch was given {rays_per_patch} rays only"
         )
-    if not solution.converged:
-        warnings.append(f"The energy balance was solved to a residual of {solution.residual:.1e} only")
     if crowded:
         warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")
-    return warnings
-
-
-def imbalance_warnings(balance: dict[str, float]) -> list[str]:
-    """A sentence when emitted and absorbed light do not add up."""
-    if abs(balance["imbalance"]) <= LARGEST_IMBALANCE:
-        return []
-    return [
-        f"{abs(balance['imbalance']):.0%} of the light is unaccounted for, so the result is wrong somewhere; "
-        "try a smaller minimum size or a higher quality, and look for a lamp that almost touches another surface"
-    ]
+    return tuple(warnings)

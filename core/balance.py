@@ -5,11 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .direct import Emitters, direct_irradiance
+from .direct import Emitters, direct_light
+from .direct_light import DirectLight
 from .errors import UnsolvableError
 from .rows import ESCAPED, Cover, Shares
 from .scene import Floats, Ints
@@ -41,6 +42,8 @@ class Balance:
         Area that is not inside a solid.
     buried : (m,) float
         Share of the area that is.
+    triangle : (m,) int
+        The surfaces' triangle that each lies in.
     reflectance, emission : (m, 3) float
     """
 
@@ -50,8 +53,13 @@ class Balance:
     escape: Floats
     areas: Floats
     buried: Floats
+    triangle: Ints
     reflectance: Floats
     emission: Floats
+
+    def recoloured(self, surfaces: Surfaces) -> Balance:
+        """The same elements, with the reflectance and emission that `surfaces` have."""
+        return replace(self, reflectance=surfaces.reflectance[self.triangle], emission=surfaces.emission[self.triangle])
 
 
 def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
@@ -69,8 +77,8 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     share = np.ones(len(elements))
     share[number[twins]] = cover.covered.mean(axis=1)
     share[number[cover.element]] -= cover.covered.mean(axis=1)
-    a, b, c = (tree.points[tree.corners[base >> 1, k]] for k in range(3))
     triangle = tree.triangle[base >> 1]
+    a, b, c = (tree.points[tree.corners[base >> 1, k]] for k in range(3))
     return Balance(
         elements,
         base,
@@ -78,6 +86,7 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         escape,
         np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried) * share,
         buried,
+        triangle,
         surfaces.reflectance[triangle],
         surfaces.emission[triangle],
     )
@@ -98,25 +107,39 @@ def left_emission(surfaces: Surfaces, emitters: Emitters) -> Floats:
 
 def direct_on_patches(
     transport: Transport, cover: Cover, balance: Balance, emitters: Emitters, report: Callable[[float], None]
-) -> Floats:
-    """Irradiance over pi of each element that is not reflected radiance: emitters and the world, (m, 3)."""
+) -> DirectLight:
+    """What each element gets of the emitters, in the mean over a few points, of m receivers."""
+    count = len(balance.elements)
     number = np.full(cover.first_twin + len(cover.element), -1, dtype=np.int64)
-    number[balance.elements] = np.arange(len(balance.elements))
-    direct = np.zeros((len(balance.elements), 3))
+    number[balance.elements] = np.arange(count)
     whole = np.flatnonzero((balance.elements == balance.base) & (cover.twin[balance.base] < 0))
     elements = balance.elements[whole]
     points, normals = sample_points(transport.surfaces, transport.tree, elements, POINTS_PER_PATCH, transport.seed + 51)
     partly = balance.buried[whole] > 0.0
     points, normals = points.copy(), normals.copy()
     points[partly], normals[partly] = transport.open_points(elements[partly], POINTS_PER_PATCH)
-    direct[whole] = _direct_at(transport, emitters, elements, points, normals, report).mean(axis=1)
+    at_points = _direct_at(transport, emitters, elements, points, normals, report)
+    direct = [at_points.weighted(1.0 / POINTS_PER_PATCH).renumbered(np.repeat(whole, POINTS_PER_PATCH), count)]
     if len(cover.element):
-        light = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
+        at_points = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
         for rows, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
-            direct[number[rows]] = (light * chosen[..., None]).sum(axis=1) / chosen.sum(axis=1)[:, None]
-    left = left_emission(transport.surfaces, emitters)
-    by_rays = balance.exchange.apply(left[transport.tree.triangle[balance.base >> 1]])
-    return direct + by_rays + balance.escape[:, None] * transport.surfaces.world
+            receiver = np.where(chosen, number[rows][:, None], -1)
+            share = chosen / chosen.sum(axis=1)[:, None]
+            direct.append(at_points.weighted(share.ravel()).renumbered(receiver.ravel(), count))
+    return DirectLight.joined(direct)
+
+
+def unreflected_light(balance: Balance, direct: DirectLight, emitters: Emitters, surfaces: Surfaces) -> Floats:
+    """Irradiance over pi of each element that is not reflected radiance: emitters and the world, (m, 3).
+
+    Parameters
+    ----------
+    direct : DirectLight
+        What the elements get of the emitters.
+    """
+    left = left_emission(surfaces, emitters)
+    by_rays = balance.exchange.apply(left[balance.triangle])
+    return direct.irradiance(emitters.radiance) + by_rays + balance.escape[:, None] * surfaces.world
 
 
 def _direct_at(
@@ -126,27 +149,25 @@ def _direct_at(
     points: Floats,
     normals: Floats,
     report: Callable[[float], None],
-) -> Floats:
-    """Direct light at points of elements, (k, p, 3) each."""
+) -> DirectLight:
+    """Direct light at points of elements, (k, p, 3), as of k p receivers."""
     count = points.shape[1]
 
-    def work(first: int, last: int) -> Floats:
+    def work(first: int, last: int) -> DirectLight:
         at, axis = points[first:last].reshape(-1, 3), normals[first:last].reshape(-1, 3)
         keys = (elements[first:last, None] * count + np.arange(count)).ravel()
-        light, _ = direct_irradiance(
+        light, _ = direct_light(
             emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, count
         )
-        return light.reshape(-1, count, 3)
+        return light
 
-    parts = transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)
-    return np.concatenate([np.zeros((0, count, 3)), *parts])
+    return DirectLight.stacked(transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report))
 
 
-def seen_radiance(transport: Transport, balance: Balance, solution: Solution, emitters: Emitters) -> Floats:
+def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Emitters, surfaces: Surfaces) -> Floats:
     """What gather rays see on each element and twin: reflected light, and emission that is not sampled explicitly."""
-    values = np.zeros((max(2 * len(transport.tree), int(balance.elements.max(initial=0)) + 1), 3))
-    left = left_emission(transport.surfaces, emitters)
-    values[balance.elements] = solution.reflected + left[transport.tree.triangle[balance.base >> 1]]
+    values = np.zeros((max(2 * nodes, int(balance.elements.max(initial=0)) + 1), 3))
+    values[balance.elements] = solution.reflected + left_emission(surfaces, emitters)[balance.triangle]
     return values
 
 

@@ -9,12 +9,13 @@ unoccluded. An emitter that is due less than one ray is drawn with that probabil
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .direct_light import DirectLight
 from .form_factors import above_horizon, heights_of, piece_factor, point_to_triangle
 from .sampling import Singles, hashed, sequence, triangle_lattice, triangle_weights
 from .scene import Floats, Ints
@@ -77,6 +78,10 @@ class Emitters:
     radiance: Floats
     one_sided: NDArray[np.bool_]
 
+    def recoloured(self, surfaces: Surfaces) -> Emitters:
+        """The same emitters, with the emission that `surfaces` have."""
+        return replace(self, radiance=surfaces.emission[self.triangle])
+
 
 def strongest_emitters(surfaces: Surfaces, lit: NDArray[np.bool_]) -> Emitters:
     """Choose the emitters that rays would sample worst: by area times squared radiance, as their variance goes.
@@ -100,7 +105,7 @@ def strongest_emitters(surfaces: Surfaces, lit: NDArray[np.bool_]) -> Emitters:
     )
 
 
-def direct_irradiance(
+def direct_light(
     emitters: Emitters,
     rays: RayScene,
     points: Floats,
@@ -110,8 +115,8 @@ def direct_irradiance(
     shadow_rays: int,
     seed: int,
     neighbours: int = 1,
-) -> tuple[Floats, Floats]:
-    """Direct irradiance over pi at points.
+) -> tuple[DirectLight, Floats]:
+    """Direct light at points.
 
     Parameters
     ----------
@@ -128,31 +133,29 @@ def direct_irradiance(
 
     Returns
     -------
-    irradiance : (n, 3) float, W m^-2 sr^-1
+    light : DirectLight
     uncertainty : (n,) float, W m^-2 sr^-1
         Standard error of its luminance, were the rays independent: 0 where every emitter is seen whole or not at all.
     """
-    total = np.zeros((len(points), 3))
-    uncertainty = np.zeros(len(points))
-    if len(emitters.triangle) == 0 or len(points) == 0:
-        return total, uncertainty
-    if len(emitters.triangle) <= FEW_EMITTERS:
+    count = len(points)
+    if len(emitters.triangle) == 0 or count == 0:
+        return DirectLight.none(count), np.zeros(count)
+    few = len(emitters.triangle) <= FEW_EMITTERS
+    if few:
         size = max(1, min(FACTORS_PER_BATCH // len(emitters.triangle), PAIRS_PER_BATCH // shadow_rays))
-        for first in range(0, len(points), size):
-            part = slice(first, first + size)
-            axes = normals[part]
-            up = axes if lift is normals else lift[part]
-            total[part], uncertainty[part] = _direct_of_each(
-                emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed
-            )
-        return total, uncertainty
-    size = neighbours * max(1, PAIRS_PER_BATCH // max(len(emitters.triangle), neighbours * shadow_rays))
-    for first in range(0, len(points), size):
+    else:
+        size = neighbours * max(1, PAIRS_PER_BATCH // max(len(emitters.triangle), neighbours * shadow_rays))
+    parts = []
+    for first in range(0, count, size):
         part = slice(first, first + size)
-        total[part], uncertainty[part] = _direct_part(
-            emitters, rays, points[part], normals[part], lift[part], keys[part], shadow_rays, seed, neighbours
-        )
-    return total, uncertainty
+        axes = normals[part]
+        up = axes if lift is normals else lift[part]
+        if few:
+            found = _direct_of_each(emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed)
+        else:
+            found = _direct_part(emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed, neighbours)
+        parts.append(found)
+    return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _direct_of_each(
@@ -164,7 +167,7 @@ def _direct_of_each(
     keys: Ints,
     shadow_rays: int,
     seed: int,
-) -> tuple[Floats, Floats]:
+) -> tuple[DirectLight, Floats]:
     """Every emitter's exact form factor times its visible share, for few emitters."""
     count = len(points)
     row, emitter = _in_sight(emitters, points, normals)
@@ -200,12 +203,9 @@ def _direct_of_each(
         low = np.flatnonzero(leaning[same])
         seen[low] &= np.einsum("prx,px->pr", toward[low], lift[at[low]]) > -OFFSET
         visible[same] = _visible_share(seen, toward, normals, at)
-    irradiance = np.empty((count, 3))
-    for channel in range(3):
-        weights = factor * visible * emitters.radiance[emitter, channel]
-        irradiance[:, channel] = np.bincount(row, weights=weights, minlength=count)
     variance = LATTICE_ERROR**2 * visible * (1.0 - visible) * np.maximum(rays_of, 1) ** -1.5 * light**2
-    return irradiance, np.sqrt(np.bincount(row, weights=variance, minlength=count))
+    uncertainty = np.sqrt(np.bincount(row, weights=variance, minlength=count))
+    return DirectLight.of(count, row, emitter, factor * visible), uncertainty
 
 
 def _in_sight(emitters: Emitters, points: Floats, normals: Floats) -> tuple[Ints, Ints]:
@@ -296,7 +296,7 @@ def _direct_part(
     shadow_rays: int,
     seed: int,
     neighbours: int,
-) -> tuple[Floats, Floats]:
+) -> tuple[DirectLight, Floats]:
     together = points.reshape(-1, neighbours, 3)
     centre = together.mean(axis=1)
     spread = np.linalg.norm(together - centre[:, None], axis=2).max(axis=1)
@@ -304,9 +304,9 @@ def _direct_part(
     group = np.repeat(np.arange(len(centre)), neighbours)
     lit = np.flatnonzero(share.any(axis=1)[group])
     count = len(points)
-    irradiance, uncertainty = np.zeros((count, 3)), np.zeros(count)
+    uncertainty = np.zeros(count)
     if len(lit) == 0:
-        return irradiance, uncertainty
+        return DirectLight.none(count), uncertainty
     points, normals, lift, group = points[lit], normals[lit], lift[lit], group[lit]
     shift = hashed(keys[lit], 3, seed)
     emitter = _systematic_draw(share, group, shadow_rays, shift[:, 2])
@@ -338,15 +338,12 @@ def _direct_part(
     row, chosen = receiver[starts], flat_emitter[starts]
     factor = point_to_triangle(points[row], normals[row], emitters.corners[chosen])
     probability = np.ones(len(row)) if all_once else np.minimum(1.0, share[group[row], chosen] * drawn_rays)
-    light = (factor * visible / probability)[:, None] * emitters.radiance[chosen]
     light_of = factor * (emitters.radiance[chosen] @ LUMINANCE)
-    for channel in range(3):
-        irradiance[lit, channel] = np.bincount(row, weights=light[:, channel], minlength=len(lit))
     # Of the visible share among the rays of an emitter, and of emitters drawn by chance.
     rays_of = np.diff(np.append(starts, len(kernel)))
     variance = (visible * (1.0 - visible) / rays_of + visible**2 * (1.0 - probability)) * (light_of / probability) ** 2
     uncertainty[lit] = np.sqrt(np.bincount(row, weights=variance, minlength=len(lit)))
-    return irradiance, uncertainty
+    return DirectLight.of(count, lit[row], chosen, factor * visible / probability), uncertainty
 
 
 def _expected_shares(emitters: Emitters, points: Floats, normals: Floats, spread: Floats) -> Floats:

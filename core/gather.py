@@ -5,20 +5,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .cells import BELOW, Cells, Radiance
-from .direct import LUMINANCE, Emitters, direct_irradiance
+from .direct import LUMINANCE, Emitters, direct_light
+from .direct_light import DirectLight
 from .receivers import Receivers
 from .rows import COVER_GAP
 from .sampling import Singles, frames, hemisphere_lattice
 from .scene import Floats, Ints
 from .transport import Transport
 from .visibility import OFFSET, Hits
+from .workers import Workers
 
 LEAST_COVERED_SHARE = 0.9
 """A receiver is covered when more of its rays than this end within `COVER_GAP` of its faces' size."""
@@ -63,8 +65,10 @@ class Gathered:
     ----------
     irradiance : (n, 3) float, W m^-2 sr^-1
         Irradiance over pi.
-    direct : (n, 3) float
-        The part of it that comes from the emitters.
+    direct : DirectLight
+        Where the part of it that comes from the emitters comes from, and
+    direct_irradiance : (n, 3) float, W m^-2 sr^-1
+        how much it is.
     noise : (n,) float
         Standard error of its luminance, from two halves of the rays.
     hidden : (n,) bool
@@ -74,7 +78,8 @@ class Gathered:
     """
 
     irradiance: Floats
-    direct: Floats
+    direct: DirectLight
+    direct_irradiance: Floats
     noise: Floats
     hidden: NDArray[np.bool_]
     places: NDArray[np.int32]
@@ -82,8 +87,8 @@ class Gathered:
     @staticmethod
     def none(rays: int) -> Gathered:
         """At no receiver."""
-        nothing = np.zeros((0, 3))
-        return Gathered(nothing, nothing, np.zeros(0), np.zeros(0, dtype=bool), np.zeros((0, rays), np.int32))
+        nothing, unseen = np.zeros((0, 3)), np.zeros(0, dtype=bool)
+        return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, np.zeros((0, rays), np.int32))
 
     def with_more(self, taken: Ints, more: Gathered, rows: Ints) -> Gathered:
         """Those of `taken`, of which `rows` are replaced by `more`."""
@@ -96,7 +101,8 @@ class Gathered:
 
         return Gathered(
             merged(self.irradiance, more.irradiance),
-            merged(self.direct, more.direct),
+            self.direct.with_more(taken, more.direct, rows),
+            merged(self.direct_irradiance, more.direct_irradiance),
             merged(self.noise, more.noise),
             merged(self.hidden, more.hidden),
             merged(self.places[:, :kept], more.places[:, :kept]),
@@ -143,19 +149,22 @@ def gather(
     parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise, hidden, places = (np.concatenate([p[k] for p in parts]) for k in range(4))
     direct = _direct(transport, emitters, receivers, counts, report)
-    return Gathered(means + direct, direct, noise, hidden, places)
+    irradiance = direct.irradiance(emitters.radiance)
+    return Gathered(means + irradiance, direct, irradiance, noise, hidden, places)
 
 
-def look_again(transport: Transport, radiance: Radiance, gathered: Gathered) -> Gathered:
+def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gathered:
     """The same rays, whose ends are looked up in another `radiance`; none is traced."""
     count, rays = gathered.places.shape
 
     def work(first: int, last: int) -> tuple[Floats, Floats, Floats]:
         return _mean_seen(radiance, gathered.places[first:last])
 
-    parts = transport.rays.map(work, count, rays)
+    parts = workers.map(work, count, rays)
+    if not parts:
+        return gathered
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
-    return Gathered(means + gathered.direct, gathered.direct, noise, gathered.hidden, gathered.places)
+    return replace(gathered, irradiance=means + gathered.direct_irradiance, noise=noise)
 
 
 def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, rays: int) -> NDArray[np.bool_]:
@@ -223,11 +232,11 @@ def _direct(
     receivers: Receivers,
     counts: GatherRays,
     report: Callable[[float], None],
-) -> Floats:
-    def pass_over(chosen: Ints, rays: int, salt: int, low: float, high: float) -> tuple[Floats, Floats]:
-        def work(first: int, last: int) -> tuple[Floats, Floats]:
+) -> DirectLight:
+    def pass_over(chosen: Ints, rays: int, salt: int, low: float, high: float) -> tuple[DirectLight, Floats]:
+        def work(first: int, last: int) -> tuple[DirectLight, Floats]:
             part = chosen[first:last]
-            return direct_irradiance(
+            return direct_light(
                 emitters,
                 transport.rays,
                 receivers.points[part],
@@ -239,19 +248,19 @@ def _direct(
             )
 
         parts = transport.rays.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))
-        if not parts:
-            return np.zeros((0, 3)), np.zeros(0)
-        return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+        return DirectLight.stacked([p[0] for p in parts]), np.concatenate([np.zeros(0), *(p[1] for p in parts)])
 
     everyone = np.arange(len(receivers.points))
     if len(emitters.triangle) == 0:
-        return np.zeros((len(everyone), 3))
+        return DirectLight.none(len(everyone))
     direct, uncertainty = pass_over(everyone, counts.shadow, 201, 0.7, 0.75)
     again = np.flatnonzero(uncertainty > 0.0)
-    direct[again], uncertainty[again] = pass_over(again, counts.penumbra, 202, 0.75, 0.85)
-    deep = np.flatnonzero(uncertainty > counts.tolerance * float((direct @ LUMINANCE).mean()))
-    direct[deep], _ = pass_over(deep, counts.deep, 203, 0.85, 1.0)
-    return direct
+    more, uncertainty[again] = pass_over(again, counts.penumbra, 202, 0.75, 0.85)
+    direct = direct.with_more(everyone, more, again)
+    mean = float((direct.irradiance(emitters.radiance) @ LUMINANCE).mean())
+    deep = np.flatnonzero(uncertainty > counts.tolerance * mean)
+    more, _ = pass_over(deep, counts.deep, 203, 0.85, 1.0)
+    return direct.with_more(everyone, more, deep)
 
 
 def corner_values(gathered: Gathered, of_corner: Ints) -> Floats:

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,9 @@ class Surfaces:
         Largest edge of the bounding box.
     world : (3,) float
     warnings : tuple of str
+        What is wrong with the triangles, and
+    colour_warnings : tuple of str
+        with their colours.
     """
 
     points: Floats
@@ -63,6 +67,12 @@ class Surfaces:
     extent: float
     world: Floats
     warnings: tuple[str, ...]
+    colour_warnings: tuple[str, ...]
+
+    def recoloured(self, scene: Scene) -> Surfaces:
+        """The same triangles, with the colours that they have in `scene`, whose meshes have the same shapes."""
+        kept = np.split(self.input_triangle, np.searchsorted(self.mesh_of_triangle, np.arange(1, len(scene.meshes))))
+        return replace(self, **_colours(scene, kept))
 
 
 def join(scene: Scene) -> Surfaces:
@@ -82,9 +92,6 @@ def join(scene: Scene) -> Surfaces:
     points = np.concatenate([np.nan_to_num(m.vertices, nan=0.0, posinf=0.0, neginf=0.0) for m in scene.meshes])
     places = np.concatenate([welded(_finite(m.vertices)) + o for m, o in zip(scene.meshes, first_point, strict=False)])
 
-    def gather(values: list[NDArray[np.float64]]) -> Floats:
-        return np.concatenate([v[k] for v, k in zip(values, kept, strict=True)]).astype(np.float64)
-
     triangles = np.concatenate([m.triangles[k] + o for m, k, o in zip(scene.meshes, kept, first_point, strict=False)])
     cross = triangle_cross(points, triangles)
     shell, closed = triangle_shells(places[triangles], len(points))
@@ -92,17 +99,16 @@ def join(scene: Scene) -> Surfaces:
     mesh_of_triangle = np.repeat(np.arange(len(counts)), counts)
     flags = np.array([mesh.baked for mesh in scene.meshes])
     normals = normalized(cross)
+    corner_normals = np.concatenate([m.corner_normals[k] for m, k in zip(scene.meshes, kept, strict=True)]).astype(
+        float
+    )
     return Surfaces(
         points=points,
         place_of_point=places,
         triangles=triangles,
         normals=normals,
         areas=np.linalg.norm(cross, axis=1) / 2.0,
-        corner_normals=_shading_normals(gather([m.corner_normals for m in scene.meshes]), normals),
-        reflectance=_reflectance(
-            scene.meshes, gather([m.reflectance for m in scene.meshes]), mesh_of_triangle, warnings
-        ),
-        emission=np.maximum(np.nan_to_num(gather([m.emission for m in scene.meshes]), posinf=0.0), 0.0),
+        corner_normals=_shading_normals(corner_normals, normals),
         mesh_of_triangle=mesh_of_triangle,
         input_triangle=np.concatenate(kept),
         first_point_of_mesh=first_point,
@@ -110,9 +116,28 @@ def join(scene: Scene) -> Surfaces:
         closed=closed,
         baked=flags[mesh_of_triangle],
         extent=extent,
-        world=np.maximum(np.nan_to_num(np.asarray(scene.world, dtype=np.float64), posinf=0.0), 0.0),
         warnings=tuple(warnings),
+        **_colours(scene, kept),
     )
+
+
+def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
+    """The fields of `Surfaces` that depend on colours; `kept` are the sound triangles of each mesh."""
+
+    def joined(values: list[Floats]) -> Floats:
+        return np.concatenate([v[k] for v, k in zip(values, kept, strict=True)]).astype(np.float64)
+
+    reflectance = np.nan_to_num(joined([mesh.reflectance for mesh in scene.meshes]), posinf=1.0)
+    outside = ((reflectance < 0.0) | (reflectance > 1.0)).any(axis=1)
+    mesh_of_triangle = np.repeat(np.arange(len(kept)), [len(keep) for keep in kept])
+    names = [scene.meshes[mesh].name for mesh in np.unique(mesh_of_triangle[outside])]
+    emission = joined([mesh.emission for mesh in scene.meshes])
+    return {
+        "reflectance": np.clip(reflectance, 0.0, 1.0),
+        "emission": np.maximum(np.nan_to_num(emission, posinf=0.0), 0.0),
+        "world": np.maximum(np.nan_to_num(np.asarray(scene.world, dtype=np.float64), posinf=0.0), 0.0),
+        "colour_warnings": tuple(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names),
+    }
 
 
 def _finite(vertices: Floats) -> Floats:
@@ -145,13 +170,3 @@ def _shading_normals(corner_normals: Floats, normals: Floats) -> Floats:
     unit = normalized(np.nan_to_num(corner_normals))
     wrong = np.einsum("tkx,tx->tk", unit, normals) <= 0.0
     return np.where(wrong[..., None], normals[:, None, :], unit)
-
-
-def _reflectance(
-    meshes: tuple[SurfaceMesh, ...], values: Floats, mesh_of_triangle: Ints, warnings: list[str]
-) -> Floats:
-    values = np.nan_to_num(values, posinf=1.0)
-    outside = ((values < 0.0) | (values > 1.0)).any(axis=1)
-    names = [meshes[mesh].name for mesh in np.unique(mesh_of_triangle[outside])]
-    warnings.extend(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names)
-    return np.clip(values, 0.0, 1.0)

@@ -4,38 +4,24 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .errors import RayLibraryError
 from .scene import Floats, Ints
-
-Result = TypeVar("Result")
+from .workers import Result, Workers
 
 OFFSET = 2e-6
 """Distance by which rays start off their surface, in units of the scene's largest extent. Coordinates are centred and
 scaled to [-0.5, 0.5], where neighbouring float32 differ by 6e-8 at most: 33 of these steps, well above the few that an
 intersection is off by, and below a gap of 0.1 mm in a scene of 50 m."""
-
-RAYS_PER_BATCH = 32768
-"""Rays handed to the ray library at once: short enough (about 10 ms) to report and to stop, long enough to be fast."""
-
-FEWEST_RAYS_PER_BATCH = 4096
-
-BATCHES_OF_SHORT_WORK = 8
-"""Batches that little work is cut into, so that no thread waits long for the last."""
-
-BATCHES_IN_FLIGHT = 4
-"""Batches queued for each thread, so that none idles while the main one reports."""
 
 
 @cache
@@ -99,6 +85,7 @@ class RayScene:
 
     Attributes
     ----------
+    workers : Workers
     rays : int
         Rays traced so far.
     seconds : float
@@ -109,7 +96,7 @@ class RayScene:
 
     def __init__(self, points: Floats, triangles: Ints, threads: int = 0) -> None:
         mesh_construction, rtcore_scene = _library()
-        self.threads = threads or os.cpu_count() or 1
+        self.workers = Workers(threads)
         used = points[triangles.ravel()]
         low, high = used.min(axis=0), used.max(axis=0)
         self._centre = (low + high) / 2.0
@@ -118,7 +105,6 @@ class RayScene:
         self.rays = 0
         self.seconds = 0.0
         self._counting = threading.Lock()
-        self._pool = ThreadPoolExecutor(self.threads)
         self._scene = rtcore_scene.EmbreeScene()
         mesh_construction.TriangleMesh(self._scene, self.local(points), triangles.astype(np.int32))
         # Embree builds its tree at the first ray; do it here, on one thread.
@@ -126,7 +112,7 @@ class RayScene:
 
     def close(self) -> None:
         """End the threads."""
-        self._pool.shutdown()
+        self.workers.close()
 
     def local(self, points: Floats) -> NDArray[np.float32]:
         """Positions (..., 3) in the ray library's own coordinates, centred and scaled to 1."""
@@ -183,30 +169,5 @@ class RayScene:
         rays_each: int,
         report: Callable[[float], None] = lambda share: None,
     ) -> list[Result]:
-        """Call `work(first, last)` over `count` items in batches, on all threads; results in order.
-
-        The batches depend on the numbers alone, not on the threads, so neither does the result. `report` is called
-        with the share done from the calling thread between batches, and may raise to stop.
-        """
-        rays = min(RAYS_PER_BATCH, max(FEWEST_RAYS_PER_BATCH, count * rays_each // BATCHES_OF_SHORT_WORK))
-        size = max(1, rays // max(1, rays_each))
-        starts = range(0, count, size)
-        if len(starts) < 2:
-            return [work(0, count) for _ in starts]
-        results: list[Result] = []
-        waiting: list[Future[Result]] = []
-        try:
-            for start in starts:
-                waiting.append(self._pool.submit(work, start, min(start + size, count)))
-                if len(waiting) >= BATCHES_IN_FLIGHT * self.threads:
-                    results.append(waiting.pop(0).result())
-                    report(len(results) / len(starts))
-            while waiting:
-                results.append(waiting.pop(0).result())
-                report(len(results) / len(starts))
-        except BaseException:
-            for future in waiting:
-                future.cancel()
-            wait(waiting)
-            raise
-        return results
+        """Call `work(first, last)` over `count` items in batches, on all threads; see `Workers.map`."""
+        return self.workers.map(work, count, rays_each, report)

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.direct import LARGEST_EMITTER_COUNT, LATTICE_ERROR, direct_irradiance, strongest_emitters
+from radiosity_bake.core.direct import LARGEST_EMITTER_COUNT, LATTICE_ERROR, direct_light, strongest_emitters
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.sampling import triangle_lattice
 from radiosity_bake.core.scene import Scene, surface_mesh
@@ -29,7 +29,8 @@ def direct(meshes, points, normals=UP, rays=16, seed=0, lift=None):
     points = np.atleast_2d(np.asarray(points, dtype=float))
     normals = np.broadcast_to(np.asarray(normals, dtype=float), points.shape)
     lift = normals if lift is None else np.broadcast_to(np.asarray(lift, dtype=float), points.shape)
-    return direct_irradiance(emitters, ray_scene, points, normals, lift, np.arange(len(points)), rays, seed)
+    light, uncertainty = direct_light(emitters, ray_scene, points, normals, lift, np.arange(len(points)), rays, seed)
+    return light.irradiance(emitters.radiance), uncertainty
 
 
 def spread(count, seed=0):

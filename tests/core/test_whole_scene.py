@@ -4,7 +4,8 @@
 
 import numpy as np
 import pytest
-from radiosity_bake.core.bake import LARGEST_IMBALANCE, bake, imbalance_warnings
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.lighting import LARGEST_IMBALANCE, imbalance_warnings
 from radiosity_bake.core.receivers import receivers
 from radiosity_bake.core.refinement import trace_all
 from radiosity_bake.core.scene import Scene, surface_mesh
@@ -78,7 +79,7 @@ def test_light_that_does_not_add_up_is_said():
 
 
 def test_the_report_says_when_light_does_not_add_up(size, monkeypatch):
-    monkeypatch.setattr("radiosity_bake.core.bake.LARGEST_IMBALANCE", -1.0)
+    monkeypatch.setattr("radiosity_bake.core.lighting.LARGEST_IMBALANCE", -1.0)
     assert any("unaccounted" in warning for warning in bake(room(), size).report["warnings"])
 
 

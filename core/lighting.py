@@ -1,0 +1,244 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light on a traced scene: all of a bake that needs colours and no rays, for the bake itself and for relighting."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .balance import Balance, check_solved, energy, left_emission, seen_radiance, unreflected_light
+from .cells import Cells, Radiance
+from .clock import Clock
+from .cutting import CutEdges, cut_faces
+from .detail import Lit
+from .direct import Emitters
+from .direct_light import DirectLight
+from .errors import NoLightError
+from .gather import Gathered, look_again
+from .interpolation import InterpolatedRadiance
+from .output import baked_meshes
+from .patches import PatchTree
+from .result import BakeResult
+from .scene import Floats, Ints, Scene
+from .settings import BakeSettings
+from .solve import Solution, solve_balance
+from .subdivision import Faces
+from .surfaces import Surfaces
+from .workers import Workers
+
+LOOKS = 2
+"""Times that gather rays are looked up again in the light of the vertices: each is one more bounce on the finest mesh,
+and a third changes less than the rays' noise."""
+
+LARGEST_IMBALANCE = 0.03
+"""Share of the power that may be missing, or too much, before the report warns of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class TracedPatches:
+    """What the rays of the patches told.
+
+    Attributes
+    ----------
+    nodes : int
+        Of the patch tree.
+    balance : Balance
+        Of m elements.
+    emitters : Emitters
+    direct : DirectLight
+        Of the m elements.
+    cells : Cells
+    aside : (places,) bool
+        Places that say nothing of the power that the vertices' light should have.
+    """
+
+    nodes: int
+    balance: Balance
+    emitters: Emitters
+    direct: DirectLight
+    cells: Cells
+    aside: NDArray[np.bool_]
+
+    def recoloured(self, surfaces: Surfaces) -> TracedPatches:
+        """The same patches, with the colours that `surfaces` have."""
+        return replace(self, balance=self.balance.recoloured(surfaces), emitters=self.emitters.recoloured(surfaces))
+
+
+@dataclass(frozen=True, eq=False)
+class PatchLight:
+    """The solved light of the patches.
+
+    Attributes
+    ----------
+    solution : Solution
+    seen : (places, 3) float, W m^-2 sr^-1
+        What rays see of it.
+    """
+
+    solution: Solution
+    seen: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class TracedCuts:
+    """Edges of faces that are cut, and the light gathered on the two sides of each cut.
+
+    Attributes
+    ----------
+    edges : CutEdges
+    seen, hidden : Gathered
+    """
+
+    edges: CutEdges
+    seen: Gathered
+    hidden: Gathered
+
+
+def check_light(surfaces: Surfaces) -> None:
+    """Raise where nothing emits.
+
+    Raises
+    ------
+    NoLightError
+    """
+    if not (surfaces.emission.any() or surfaces.world.any()):
+        raise NoLightError("Nothing in the scene emits light; give a material some Emission, or the World a colour")
+
+
+def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
+    """Solve the energy balance.
+
+    Raises
+    ------
+    UnsolvableError
+        When light is trapped.
+    """
+    balance, emitters = patches.balance, patches.emitters
+    direct = unreflected_light(balance, patches.direct, emitters, surfaces)
+    solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas)
+    check_solved(solution, surfaces)
+    seen = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)
+    return PatchLight(solution, seen[patches.cells.element])
+
+
+def looked_again(
+    workers: Workers,
+    patches: TracedPatches,
+    light: PatchLight,
+    surfaces: Surfaces,
+    shown: Lit,
+    leaves: PatchTree,
+) -> tuple[Lit, Radiance]:
+    """Look the gather rays up again in the light of the vertices; returns the faces' light and what rays saw last."""
+    left = left_emission(surfaces, patches.emitters)
+    interpolated = InterpolatedRadiance(
+        patches.cells, leaves, surfaces, left, light.seen, shown.gathered.places, patches.aside
+    )
+    for _ in range(LOOKS):
+        radiance = Radiance.of(patches.cells, interpolated.at(shown), surfaces.world)
+        shown = replace(shown, gathered=look_again(workers, radiance, shown.gathered))
+    return shown, radiance
+
+
+def relit(workers: Workers, emitters: Emitters, radiance: Radiance, gathered: Gathered) -> Gathered:
+    """What was gathered, with other light: the emitters' and what the same rays see of everything else."""
+    direct = gathered.direct.irradiance(emitters.radiance)
+    return look_again(workers, radiance, replace(gathered, direct_irradiance=direct))
+
+
+@dataclass(frozen=True, eq=False)
+class Story:
+    """What is to be told of a bake beside its values, and does not depend on colours.
+
+    Attributes
+    ----------
+    settings : BakeSettings
+    counts : dict
+        Entries of the report.
+    warnings : tuple of str
+        Of limits that were met.
+    """
+
+    settings: BakeSettings
+    counts: dict[str, Any]
+    warnings: tuple[str, ...]
+
+
+def result_of(
+    scene: Scene,
+    surfaces: Surfaces,
+    lit: NDArray[np.bool_],
+    patches: TracedPatches,
+    solution: Solution,
+    shown: Lit,
+    cuts: TracedCuts | None,
+    story: Story,
+    clock: Clock,
+) -> BakeResult:
+    """Sort the light of the faces back to the meshes, and write the report.
+
+    Parameters
+    ----------
+    lit : (shells, 2) bool
+    cuts : TracedCuts or None
+        None where faces are not cut.
+    """
+    faces, face, irradiance = _cut(shown, cuts)
+    output = story.settings.output
+    meshes, warnings = baked_meshes(scene, surfaces, lit, faces, face, irradiance, output)
+    error = shown.error(surfaces)
+    balance = energy(patches.balance, solution, surfaces)
+    clock.stop()
+    report: dict[str, Any] = {
+        **story.counts,
+        "vertices": sum(len(np.unique(mesh.triangles)) for mesh in meshes),
+        "triangles": sum(len(mesh.triangles) for mesh in meshes),
+        "seconds": clock.seconds,
+        "iterations": solution.iterations,
+        "residual": solution.residual,
+        "converged": solution.converged,
+        "estimated_error": error,
+        "energy": balance,
+        "settings": asdict(story.settings),
+        "warnings": [
+            *surfaces.warnings,
+            *surfaces.colour_warnings,
+            *warnings,
+            *story.warnings,
+            *_solution_warnings(solution),
+            *imbalance_warnings(balance),
+        ],
+    }
+    return BakeResult(meshes, report)
+
+
+def _cut(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]:
+    """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
+    if cuts is None:
+        return shown.faces, shown.face, shown.corner_irradiance()
+    count, gathered = len(shown.faces.triangle), shown.gathered
+    fronts = gathered.irradiance[shown.places.of_corner[:count]]
+    values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
+    sides = cuts.seen.irradiance, cuts.hidden.irradiance
+    return cut_faces(shown.faces, shown.face, shown.places, gathered.hidden, cuts.edges, values, *sides)
+
+
+def _solution_warnings(solution: Solution) -> list[str]:
+    """A sentence on a balance that was not solved."""
+    if solution.converged:
+        return []
+    return [f"The energy balance was solved to a residual of {solution.residual:.1e} only"]
+
+
+def imbalance_warnings(balance: dict[str, float]) -> list[str]:
+    """A sentence when emitted and absorbed light do not add up."""
+    if abs(balance["imbalance"]) <= LARGEST_IMBALANCE:
+        return []
+    return [
+        f"{abs(balance['imbalance']):.0%} of the light is unaccounted for, so the result is wrong somewhere; "
+        "try a smaller minimum size or a higher quality, and look for a lamp that almost touches another surface"
+    ]

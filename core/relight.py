@@ -1,0 +1,208 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Relighting: other emission, reflectance and world on the transport of a bake, without tracing a ray."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass, fields, is_dataclass, replace
+from hashlib import blake2b
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cells import Radiance
+from .clock import Clock
+from .detail import Lit
+from .errors import BakeError
+from .lighting import (
+    Story,
+    TracedCuts,
+    TracedPatches,
+    check_light,
+    light_of_patches,
+    looked_again,
+    relit,
+    result_of,
+)
+from .patches import PatchTree
+from .progress import ProgressCallback, no_progress
+from .result import BakeResult
+from .scene import Scene, SurfaceMesh
+from .surfaces import Surfaces
+from .workers import Workers
+
+
+class ChangedSceneError(BakeError):
+    """The scene is not the one that was baked."""
+
+
+@dataclass(frozen=True, eq=False)
+class KeptTransport:
+    """All of a bake that does not depend on colours.
+
+    Attributes
+    ----------
+    shapes : tuple of bytes
+        Of the scene's meshes, to notice that one was changed.
+    surfaces : Surfaces
+        With the colours of the bake.
+    lit : (shells, 2) bool
+    patches : TracedPatches
+    shown : Lit
+        Faces and what was gathered at them.
+    leaves : PatchTree
+        In whose leaves the faces lie.
+    cuts : TracedCuts or None
+    story : Story
+    """
+
+    shapes: tuple[bytes, ...]
+    surfaces: Surfaces
+    lit: NDArray[np.bool_]
+    patches: TracedPatches
+    shown: Lit
+    leaves: PatchTree
+    cuts: TracedCuts | None
+    story: Story
+
+
+@dataclass(frozen=True)
+class NotKept:
+    """Why the transport of a bake was not kept, as a sentence."""
+
+    why: str
+
+
+def keep(kept: KeptTransport) -> KeptTransport | NotKept:
+    """Give back the transport, or say why it cannot be kept: it would take more than the memory limit."""
+    limit = kept.story.settings.memory_limit
+    gathers = [kept.shown.gathered, *((kept.cuts.seen, kept.cuts.hidden) if kept.cuts else ())]
+    complete = all(len(gathered.places) == 0 or gathered.places.shape[1] > 0 for gathered in gathers)
+    if complete and size_of(kept) <= limit * 2**20:
+        return kept
+    return NotKept(
+        f"What the rays of the last bake met is larger than the memory limit of {limit:,} MiB and was not kept; "
+        "raise the limit and bake again to relight"
+    )
+
+
+def size_of(value: object) -> int:
+    """Bytes of all arrays that a value consists of, each counted once."""
+    arrays = {id(array): array for array in _arrays(value, set())}
+    return sum(array.nbytes for array in arrays.values())
+
+
+def _arrays(value: object, known: set[int]) -> Iterator[NDArray[Any]]:
+    if id(value) in known:
+        return
+    known.add(id(value))
+    if isinstance(value, np.ndarray):
+        yield value if value.base is None or not isinstance(value.base, np.ndarray) else value.base
+    elif isinstance(value, tuple | list):
+        for part in value:
+            yield from _arrays(part, known)
+    elif is_dataclass(value):
+        for field in fields(value):
+            yield from _arrays(getattr(value, field.name), known)
+    elif type(value).__module__.startswith(__package__ or "core"):
+        yield from _arrays(list(vars(value).values()), known)
+
+
+def shape_of(mesh: SurfaceMesh) -> bytes:
+    """A number that changes with anything about a mesh but its colours and its name."""
+    digest = blake2b(digest_size=16)
+    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, np.array(mesh.baked)):
+        digest.update(repr((array.shape, array.dtype.str)).encode())
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.digest()
+
+
+def shapes_of(scene: Scene) -> tuple[bytes, ...]:
+    """The shape of each mesh."""
+    return tuple(shape_of(mesh) for mesh in scene.meshes)
+
+
+def relight(kept: KeptTransport, scene: Scene, progress: ProgressCallback = no_progress) -> BakeResult:
+    """Give the scene that was baked other light: solve again, and look up again what its rays met.
+
+    Parameters
+    ----------
+    kept : KeptTransport
+        Not changed.
+    scene : Scene
+        The same meshes, with any reflectance, emission and world.
+
+    Returns
+    -------
+    As the bake would: the same meshes with other values.
+
+    Raises
+    ------
+    ChangedSceneError
+        When the meshes are not those that were baked, or something gives light that gave none.
+    BakeError
+        As `bake` raises them for light that cannot be solved.
+    """
+    clock = Clock(progress)
+    clock.start("Preparing", 0.0, 0.1)
+    check_shapes(kept, scene)
+    surfaces = kept.surfaces.recoloured(scene)
+    check_sources(kept, scene, surfaces)
+    check_light(surfaces)
+    with closing(Workers(kept.story.settings.threads)) as workers:
+        return _relight(kept, scene, surfaces, workers, clock)
+
+
+def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Workers, clock: Clock) -> BakeResult:
+    clock.start("Solving", 0.1, 0.4)
+    patches = kept.patches.recoloured(surfaces)
+    light = light_of_patches(patches, surfaces)
+
+    clock.start("Gathering", 0.4, 0.9)
+    radiance = Radiance.of(patches.cells, light.seen, surfaces.world)
+    shown = replace(kept.shown, gathered=relit(workers, patches.emitters, radiance, kept.shown.gathered))
+    cuts = kept.cuts
+    if kept.story.settings.output == "REFINED":
+        shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.leaves)
+    if cuts is not None:
+        seen, hidden = (relit(workers, patches.emitters, radiance, side) for side in (cuts.seen, cuts.hidden))
+        cuts = TracedCuts(cuts.edges, seen, hidden)
+
+    clock.start("Reconstructing", 0.9, 1.0)
+    counts = {**kept.story.counts, "relit": True, "rays": 0, "seconds_in_ray_library": 0.0}
+    counts["rays_by_kind"] = dict.fromkeys(counts["rays_by_kind"], 0)
+    story = replace(kept.story, counts=counts)
+    return result_of(scene, surfaces, kept.lit, patches, light.solution, shown, cuts, story, clock)
+
+
+def check_shapes(kept: KeptTransport, scene: Scene) -> None:
+    """Refuse a scene whose meshes are not those that were baked.
+
+    Raises
+    ------
+    ChangedSceneError
+    """
+    if len(scene.meshes) != len(kept.shapes):
+        raise ChangedSceneError("Objects were added, removed or hidden since the bake; bake again")
+    for mesh, shape in zip(scene.meshes, kept.shapes, strict=True):
+        if shape_of(mesh) != shape:
+            raise ChangedSceneError(f'"{mesh.name}" was changed or moved since the bake; bake again')
+
+
+def check_sources(kept: KeptTransport, scene: Scene, surfaces: Surfaces) -> None:
+    """Refuse light from what gave none in the bake, whose shadows were not traced and whose ways nobody walked.
+
+    Raises
+    ------
+    ChangedSceneError
+    """
+    before = kept.surfaces
+    new = np.flatnonzero(surfaces.emission.any(axis=1) & ~before.emission.any(axis=1))
+    if len(new):
+        name = scene.meshes[surfaces.mesh_of_triangle[new[0]]].name
+        raise ChangedSceneError(f'"{name}" gave no light where it does now when the scene was baked; bake again')
+    if surfaces.world.any() and not before.world.any():
+        raise ChangedSceneError("The World gave no light when the scene was baked; bake again")

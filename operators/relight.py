@@ -1,0 +1,179 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Relighting: the objects of the last bake with the colours that their materials have now, in place."""
+
+import json
+import time
+from dataclasses import replace
+from typing import Any
+
+import bpy
+
+from ..core.errors import BakeError
+from ..core.progress import ProgressCallback, no_progress
+from ..core.relight import KeptTransport, NotKept, relight
+from ..core.result import BakedMesh, BakeResult
+from ..core.settings import BakeSettings
+from . import display
+from .bake import RADIOSITY_OT_bake, counted, shown_report, way_to_object_mode
+from .colours import rewrite_colours
+from .extraction import Extraction, Target, extract
+from .journal import Journal
+from .local_mesh import fingerprint
+from .places import outputs_by_source
+from .record import BAKED_IN_PLACE
+from .refined import values_of_corners
+from .settings import bake_settings
+from .store import store
+from .transports import RememberedBake, remembered_bake
+
+
+class NotRelightableError(BakeError):
+    """What is in memory does not fit the scene."""
+
+
+def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_progress) -> dict[str, Any]:
+    """Light the last bake of the scene again, and return the report.
+
+    Raises
+    ------
+    BakeError
+        With a sentence for the user; nothing was changed.
+    """
+    began = time.perf_counter()
+    scene = context.scene
+    bake = remembered_bake(scene)
+    reason = reason_of_memory(context) if bake is None else _reason_of_transport(bake)
+    if bake is None or not isinstance(bake.transport, KeptTransport):
+        raise NotRelightableError(reason)
+    if _without_effect(bake_settings(scene.radiosity)) != _without_effect(bake.settings):
+        raise NotRelightableError("The settings were changed since the bake; bake again, or set them back to relight")
+    extraction = extract(context, _originals(bake))
+    uids = [target.uid for target in extraction.targets]
+    if uids != [obj.uid for obj in bake.objects]:
+        raise NotRelightableError("Objects were added, removed or hidden since the bake; bake again")
+    read = time.perf_counter() - began
+    result = relight(bake.transport, extraction.scene, progress)
+    began = time.perf_counter()
+    if bake.settings.output == "ORIGINAL":
+        objects, cautions = store(scene, extraction, result, bake.settings.output)
+    else:
+        objects, cautions = _store_in_refined(bake, extraction, result), []
+    report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
+    scene.radiosity.report = json.dumps(report)
+    return report
+
+
+def _without_effect(settings: BakeSettings) -> BakeSettings:
+    """The settings without those that do not change the result."""
+    default = BakeSettings()
+    return replace(
+        settings,
+        threads=default.threads,
+        memory_limit=default.memory_limit,
+        keep_transport=default.keep_transport,
+    )
+
+
+def _originals(bake: RememberedBake) -> list[bpy.types.Object]:
+    by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
+    return [by_uid[obj.uid] for obj in bake.objects]
+
+
+def _store_in_refined(bake: RememberedBake, extraction: Extraction, result: BakeResult) -> list[bpy.types.Object]:
+    """Write the values on the corners of the refined meshes; returns the refined objects.
+
+    Raises
+    ------
+    NotRelightableError
+        When one of the meshes was edited.
+    """
+    outputs = outputs_by_source()
+    found: list[tuple[bpy.types.Object, Target, BakedMesh]] = []
+    for source, baked_object, target, baked in zip(
+        _originals(bake), bake.objects, extraction.targets, result.meshes, strict=True
+    ):
+        for output in outputs[source]:
+            if output.mode != "OBJECT" or fingerprint(output.data) != baked_object.fingerprint:
+                raise NotRelightableError(f'The mesh of "{output.name}" was edited since the bake; bake again')
+            found.append((output, target, baked))
+    with Journal() as journal:
+        for output, target, baked in found:
+            rewrite_colours(output.data, values_of_corners(target, baked), journal)
+            _show_sides(output, journal)
+        journal.later(display.remove_unused_display_materials)
+    return [output for output, _, _ in found]
+
+
+def _show_sides(output: bpy.types.Object, journal: Journal) -> None:
+    """Have the material show the backs once they have colours."""
+    material = display.display_material(display.RADIOSITY_BACK in output.data.color_attributes, journal)
+    for slot in output.material_slots:
+        if display.is_display(slot.material) and slot.material != material:
+            journal.set(slot, "material", material)
+
+
+def reason_not_to_relight(context: bpy.types.Context) -> str | None:
+    """Return a sentence that says why the button is grey, or None when it is not."""
+    if RADIOSITY_OT_bake.job is not None:
+        return "A bake is running; wait for it or press Esc"
+    if context.mode != "OBJECT":
+        return f"{way_to_object_mode(context)} to relight"
+    bake = remembered_bake(context.scene)
+    return reason_of_memory(context) if bake is None else _reason_of_transport(bake)
+
+
+def reason_of_memory(context: bpy.types.Context) -> str:
+    """Return why there is no transport in memory."""
+    settings = context.scene.radiosity
+    if not settings.report:
+        return "Bake first: Relight gives a bake the colours that the materials have now"
+    if not settings.keep_transport:
+        return "Turn on Keep for Relighting and bake again to relight"
+    return (
+        "What the rays of this bake met is not in memory: it is let go of when a file is opened, when another scene is "
+        "baked and when the bake is undone; bake again to relight"
+    )
+
+
+def _reason_of_transport(bake: RememberedBake) -> str | None:
+    if isinstance(bake.transport, NotKept):
+        return bake.transport.why
+    by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
+    refined = outputs_by_source() if bake.settings.output == "REFINED" else {}
+    for baked in bake.objects:
+        obj = by_uid.get(baked.uid)
+        if obj is None or (obj not in refined and obj.radiosity.kind != BAKED_IN_PLACE):
+            return f'"{baked.name}" is not baked any more; bake again to relight'
+    return None
+
+
+class RADIOSITY_OT_relight(bpy.types.Operator):
+    """Light the last bake again, without tracing."""
+
+    bl_idname = "radiosity.relight"
+    bl_label = "Relight"
+    bl_description = (
+        "Give the last bake the colours that materials and World have now, in a small share of its time. "
+        "Emission, its strength and base colours may change; for everything else, bake again"
+    )
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
+
+    @classmethod
+    def poll(cls, context):
+        """Return whether the last bake can be lit again; the tooltip says why not."""
+        reason = reason_not_to_relight(context)
+        if reason is not None:
+            cls.poll_message_set(reason)
+        return reason is None
+
+    def execute(self, context):
+        """Relight to the end."""
+        try:
+            report = relight_scene(context)
+        except BakeError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        sentence = f"Relit {counted(len(report['objects']), 'object')} in {report['seconds']['total']:.1f} s"
+        self.report({"INFO"}, sentence)
+        return {"FINISHED"}
