@@ -202,6 +202,7 @@ def _bake(
             "gather": rays.rays - traced,
         },
         "seconds_in_ray_library": rays.seconds,
+        "threads": rays.workers.threads,
         "form_factor_standard_error": refinement.typical_standard_error(shares, settings.threshold),
         "minimum_size": smallest,
         "minimum_face_size": finest if settings.output == "REFINED" else None,

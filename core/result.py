@@ -55,7 +55,7 @@ class BakeResult:
 
     `report` holds only what JSON can: `relit` (whether `relight` made it), `patches`, `vertices`, `triangles`, `rays`
     (total), `rays_by_kind` (`walks` that find the lit sides, `form_factors`, `patches` for covers and direct light,
-    `gather`), `seconds` (by stage, with `total`), `seconds_in_ray_library` (summed over threads), `iterations`,
+    `gather`), `seconds` (by stage, with `total`), `seconds_in_ray_library` (summed over `threads`), `iterations`,
     `residual`, `converged`, `estimated_error` (relative RMS), `form_factor_standard_error` (of a form factor as large
     as the threshold, in the median), `energy` (`emitted`, `from_world`, `reflected`, `absorbed`, `escaped` in W, and
     `imbalance`), `minimum_size`, `minimum_face_size` (None where faces are not split), `rounds` (a list, one entry a

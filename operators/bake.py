@@ -58,11 +58,24 @@ def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, r
     report = {
         **result.report,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
+        "profile": profile(seconds, result.report),
         "objects": [obj.name for obj in objects],
         "warnings": [*extraction.warnings, *result.report.get("warnings", ()), *cautions],
     }
     scene.radiosity.report = json.dumps(report)
     return report
+
+
+def profile(seconds: dict[str, float], told: dict[str, Any]) -> dict[str, float]:
+    """Return where the time went: shares of the total inside the ray library, in arrays, and in Blender.
+
+    The ray library's seconds are those of all threads, so their mean is what it took of the clock.
+    """
+    total = max(seconds["total"], 1e-9)
+    rays = told.get("seconds_in_ray_library", 0.0) / max(told.get("threads", 1), 1) / total
+    blender = (seconds["extract"] + seconds["store"]) / total
+    shares = {"ray_library": rays, "arrays": max(0.0, 1.0 - rays - blender), "blender": blender}
+    return {name: round(share, 4) for name, share in shares.items()}
 
 
 def _core_bake():

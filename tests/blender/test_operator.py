@@ -232,6 +232,16 @@ def test_the_report_has_the_cores_numbers_the_objects_and_the_seconds_of_each_si
     assert seconds["total"] == pytest.approx(seconds["extract"] + seconds["store"], abs=1e-3)
 
 
+def test_the_report_says_where_the_time_went():
+    add_cube(select=True)
+    add_lamp_mesh()
+    bake()
+    profile = report()["profile"]
+    assert set(profile) == {"ray_library", "arrays", "blender"}
+    assert sum(profile.values()) == pytest.approx(1.0, abs=1e-3)
+    assert min(profile.values()) > 0.0
+
+
 def test_warnings_of_the_core_are_in_the_report(monkeypatch):
     def warn(scene, settings, progress):
         result = position_bake(scene, settings, progress)
