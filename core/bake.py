@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from .patches import PatchTree, coarse_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
-from .relight import KeptTransport, NotKept, keep, shapes_of
+from .relight import KeptTransport, keep, shapes_of
 from .result import BakeResult
 from .rows import BYTES_PER_RAY, COVER_GAP
 from .scene import Ints, Scene
@@ -104,13 +104,6 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     Cancelled
         When `progress` raised it.
     """
-    return bake_and_keep(scene, settings, progress)[0]
-
-
-def bake_and_keep(
-    scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress
-) -> tuple[BakeResult, KeptTransport | NotKept]:
-    """As `bake`, and give back what `relight` needs to do it again with other colours."""
     clock = Clock(progress)
 
     clock.start("Preparing", 0.0, 0.02)
@@ -120,9 +113,7 @@ def bake_and_keep(
         return _bake(scene, surfaces, rays, settings, clock)
 
 
-def _bake(
-    scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettings, clock: Clock
-) -> tuple[BakeResult, KeptTransport | NotKept]:
+def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettings, clock: Clock) -> BakeResult:
     effort = EFFORTS[settings.quality]
     lit = lit_sides(surfaces, rays, settings.seed)
 
@@ -210,8 +201,12 @@ def _bake(
         "ended": rounds.ended,
     }
     story = Story(settings, counts, limit_warnings(rounds, per_row, effort, crowded))
-    kept = keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, leaves, cuts, story))
-    return result_of(scene, surfaces, lit, patches, light.solution, shown, cuts, story, clock), kept
+    result = result_of(scene, surfaces, lit, patches, light.solution, shown, cuts, story, clock)
+    if not settings.keep_transport:
+        return result
+    return replace(
+        result, kept=keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, leaves, cuts, story))
+    )
 
 
 def automatic_size(surfaces: Surfaces, effort: Effort) -> float:

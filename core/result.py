@@ -5,9 +5,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .scene import Floats, Ints
+
+if TYPE_CHECKING:
+    from .relight import KeptTransport, NotKept
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +63,10 @@ class BakeResult:
     as the threshold, in the median), `energy` (`emitted`, `from_world`, `reflected`, `absorbed`, `escaped` in W, and
     `imbalance`), `minimum_size`, `minimum_face_size` (None where faces are not split), `rounds` (a list, one entry a
     refinement round), `ended` (why refinement ended), `settings` and `warnings` (a list of sentences).
+
+    `kept` is what `relight` needs, or why it is not there; None where it was not asked for.
     """
 
     meshes: tuple[BakedMesh, ...]
     report: dict[str, Any]
+    kept: KeptTransport | NotKept | None = None

@@ -44,6 +44,8 @@ class BakeSettings:
     memory_limit : int
         What the traced rays and the working arrays made of them may take, in MiB; a small one gives fewer patches and
         rays, and a warning.
+    keep_transport : bool
+        Whether the result holds what the rays met, so that it can be lit again; that, too, stays below the limit.
     """
 
     threshold: float = 0.02
@@ -54,6 +56,7 @@ class BakeSettings:
     seed: int = 0
     threads: int = 0
     memory_limit: int = 2048
+    keep_transport: bool = True
 
     def __post_init__(self) -> None:
         if not (0.0 < self.threshold <= 1.0):

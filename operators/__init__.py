@@ -4,7 +4,7 @@
 
 import bpy
 
-from . import bake, command, record, restore, settings
+from . import bake, command, record, relight, restore, settings, transports
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
@@ -14,6 +14,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         record.ObjectRecord,
         bake.RADIOSITY_OT_bake,
         bake.RADIOSITY_OT_cancel,
+        relight.RADIOSITY_OT_relight,
         restore.RADIOSITY_OT_restore,
     )
 )
@@ -24,6 +25,7 @@ def register() -> None:
     _register_classes()
     bpy.types.Scene.radiosity = bpy.props.PointerProperty(type=settings.RadiositySettings)
     bpy.types.Object.radiosity = bpy.props.PointerProperty(type=record.ObjectRecord, override={"LIBRARY_OVERRIDABLE"})
+    transports.register()
     command.register()
 
 
@@ -31,6 +33,7 @@ def unregister() -> None:
     """Unregister in reverse; a bake that still runs is asked to stop."""
     bake.stop_running_job()
     command.unregister()
+    transports.unregister()
     del bpy.types.Object.radiosity
     del bpy.types.Scene.radiosity
     _unregister_classes()

@@ -19,6 +19,7 @@ from .job import BakeJob, Failed, Finished
 from .record import source_of
 from .settings import bake_settings
 from .store import check_storable, scene_of, store
+from .transports import remember
 
 _POLL_SECONDS = 0.1
 _PATIENCE_SECONDS = 0.3
@@ -53,17 +54,30 @@ def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, r
     began = time.perf_counter()
     scene = scene_of(extraction)
     objects, cautions = store(scene, extraction, result, settings.output)
-    seconds = {"extract": read, **result.report.get("seconds", {}), "store": time.perf_counter() - began}
+    remember(scene, extraction, settings, result, objects)
+    report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
+    scene.radiosity.report = json.dumps(report)
+    return report
+
+
+def shown_report(
+    extraction: Extraction,
+    result: BakeResult,
+    objects: list[bpy.types.Object],
+    cautions: list[str],
+    read: float,
+    stored: float,
+) -> dict[str, Any]:
+    """Return the report of the core with what the Blender side adds; `read` and `stored` are its seconds."""
+    seconds = {"extract": read, **result.report.get("seconds", {}), "store": stored}
     seconds["total"] = seconds.get("total", 0.0) + seconds["extract"] + seconds["store"]
-    report = {
+    return {
         **result.report,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
         "profile": profile(seconds, result.report),
         "objects": [obj.name for obj in objects],
         "warnings": [*extraction.warnings, *result.report.get("warnings", ()), *cautions],
     }
-    scene.radiosity.report = json.dumps(report)
-    return report
 
 
 def profile(seconds: dict[str, float], told: dict[str, Any]) -> dict[str, float]:
@@ -99,7 +113,7 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     if problem is not None:
         return problem
     if context.mode != "OBJECT":
-        return f"{_way_to_object_mode(context)} to bake"
+        return f"{way_to_object_mode(context)} to bake"
     if context.scene.library is not None:
         return "This scene is linked from another file; make it local to bake"
     meshes = [obj for obj in context.selected_objects if source_of(obj).type == "MESH"]
@@ -110,7 +124,8 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     return None
 
 
-def _way_to_object_mode(context: bpy.types.Context) -> str:
+def way_to_object_mode(context: bpy.types.Context) -> str:
+    """Return what to do to get into object mode, to begin a sentence with."""
     return "Leave edit mode" if "EDIT" in context.mode else "Switch to object mode"
 
 
@@ -189,11 +204,13 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         if messages and not isinstance(messages[-1], Progress):
             self._outcome = messages[-1]
         if self._outcome is not None and not self._must_wait(context):
+            # Blender may keep the operator, and with it what it holds.
+            outcome, self._outcome = self._outcome, None
             self._leave(context)
-            return self._end(context, self._outcome)
+            return self._end(context, outcome)
         if self._outcome is not None:
             # Objects cannot be exchanged, nor the step of undo be made, in the middle of an edit.
-            job.latest = Progress(f"{_way_to_object_mode(context)} to finish the bake", 1.0)
+            job.latest = Progress(f"{way_to_object_mode(context)} to finish the bake", 1.0)
         if messages:
             self._show(context, job.latest)
         return {"PASS_THROUGH"}

@@ -157,6 +157,7 @@ def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettin
         "seed": options.seed,
         "threads": options.threads,
         "memory_limit": options.memory_limit,
+        "keep_transport": None,
     }
     return BakeSettings(**{name: getattr(saved, name) if value is None else value for name, value in given.items()})
 

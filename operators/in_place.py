@@ -15,7 +15,7 @@ from .changes import (
     remove_attribute,
     rename_attribute,
 )
-from .colours import AttributeNameError, write_colours
+from .colours import AttributeNameError, remove_if_there, write_colours
 from .extraction import Target
 from .journal import Journal
 from .local_mesh import local_mesh
@@ -106,18 +106,13 @@ def _make_room(obj: bpy.types.Object, values: dict[str, Floats | None], journal:
         if colours is not None:
             if not ours:
                 _remember(record, name)
-            journal.on_failure(_remove_if_there, mesh, name)
+            journal.on_failure(remove_if_there, mesh, name)
 
 
 def _remember(record, name: str):
     remembered = record.attributes.add()
     remembered.name = name
     return remembered
-
-
-def _remove_if_there(mesh: bpy.types.Mesh, name: str) -> None:
-    if name in mesh.color_attributes:
-        mesh.color_attributes.remove(mesh.color_attributes[name])
 
 
 def _show(obj: bpy.types.Object, both_sides: bool, journal: Journal) -> None:

@@ -63,8 +63,7 @@ def _inverse(matrix: Floats) -> Floats | None:
 def _refined_mesh(
     name: str, target: Target, baked: BakedMesh, inverse: Floats | None, journal: Journal
 ) -> bpy.types.Mesh:
-    # Blender turns the faces of a mirrored object over, as the extraction did; in local space they turn back.
-    order = [0, 2, 1] if target.flipped and inverse is not None else [0, 1, 2]
+    order = _corner_order(target)
     triangles = baked.triangles[:, order]
     vertices, normals = _in_local_space(target, baked, inverse)
     mesh = bpy.data.meshes.new(name)
@@ -78,17 +77,26 @@ def _refined_mesh(
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
     mesh.polygons.foreach_set("material_index", target.local.slots[baked.parent_triangle].astype(np.int32))
     mesh.update(calc_edges=True)
-    write_colours(
-        mesh,
-        {
-            name: None if values is None else values[:, order].reshape(-1, 3)
-            for name, values in baked_values(baked).items()
-        },
-    )
+    write_colours(mesh, values_of_corners(target, baked))
     _shade(mesh, vertices, triangles, normals[:, order])
     # Last, because it may drop faces that Blender cannot hold (a corner used twice) with all that belongs to them.
     mesh.validate()
     return mesh
+
+
+def _corner_order(target: Target) -> list[int]:
+    """Return the order of a refined triangle's corners on the mesh of its object."""
+    # Blender turns the faces of a mirrored object over, as the extraction did; in local space they turn back.
+    return [0, 2, 1] if target.flipped and _inverse(target.matrix) is not None else [0, 1, 2]
+
+
+def values_of_corners(target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
+    """Return the values of a baked mesh for the corners of its refined object's mesh, by the name of the attribute."""
+    order = _corner_order(target)
+    return {
+        name: None if values is None else values[:, order].reshape(-1, 3)
+        for name, values in baked_values(baked).items()
+    }
 
 
 def baked_values(baked: BakedMesh) -> dict[str, Floats | None]:

@@ -123,9 +123,23 @@ class RadiositySettings(bpy.types.PropertyGroup):
         soft_max=65536,
         options=set(),
     )
+    keep_transport: bpy.props.BoolProperty(
+        name="Keep for Relighting",
+        description=(
+            "Keep what the rays of the last bake met in memory, so that Relight can give it other colours. "
+            "It takes some tens of megabytes for a room, never more than the memory limit, and is not saved in the file"
+        ),
+        default=DEFAULTS.keep_transport,
+        options=set(),
+    )
     report: bpy.props.StringProperty(
         name="Report",
         description="What came of the last bake, as JSON",
+        options={"HIDDEN"},
+    )
+    token: bpy.props.StringProperty(
+        name="Token",
+        description="Tells the bake that the scene shows from all others",
         options={"HIDDEN"},
     )
     shading_before: bpy.props.StringProperty(
@@ -157,6 +171,7 @@ def bake_settings(properties: RadiositySettings) -> BakeSettings:
         seed=properties.seed,
         threads=properties.threads,
         memory_limit=properties.memory_limit,
+        keep_transport=properties.keep_transport,
     )
 
 

@@ -49,6 +49,7 @@ class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
         reason = reason_not_to_bake(context)
         if reason is not None:
             _draw_sentence(layout, context, reason, "INFO")
+        layout.operator("radiosity.relight", icon="SHADING_RENDERED")
         layout.operator("radiosity.restore", icon="LOOP_BACK")
 
 
@@ -69,6 +70,7 @@ class VIEW3D_PT_radiosity_sampling(_InSidebar, bpy.types.Panel):
         layout.prop(settings, "seed")
         layout.prop(settings, "threads")
         layout.prop(settings, "memory_limit")
+        layout.prop(settings, "keep_transport")
 
 
 class VIEW3D_PT_radiosity_result(_InSidebar, bpy.types.Panel):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from radiosity_bake.core.bake import bake, bake_and_keep
+from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct_light import DirectLight
 from radiosity_bake.core.errors import Cancelled, NoLightError, UnsolvableError
 from radiosity_bake.core.relight import ChangedSceneError, KeptTransport, NotKept, relight, size_of
@@ -83,8 +83,8 @@ def kept_bakes():
     def make(name, **settings):
         key = (name, *settings.items())
         if key not in made:
-            made[key] = bake_and_keep(SCENES[name](), BakeSettings(**(COARSE | settings)))
-        return made[key]
+            made[key] = bake(SCENES[name](), BakeSettings(**(COARSE | settings)))
+        return made[key], made[key].kept
 
     return make
 
@@ -208,10 +208,9 @@ def test_no_ray_is_traced(kept_bakes, monkeypatch):
 def test_what_is_kept_stays_below_the_memory_limit():
     scene = room_with_block()
     settings = BakeSettings(quality="DRAFT", minimum_size=0.02, method="UNIFORM", memory_limit=64)
-    result, kept = bake_and_keep(scene, settings)
+    kept = bake(scene, settings).kept
     assert isinstance(kept, NotKept)
     assert "memory limit of 64 MiB" in kept.why
-    assert not result.report["relit"]
 
 
 def test_the_size_counts_every_array_once(kept_bakes):
@@ -288,7 +287,9 @@ def test_progress_grows_and_can_stop_it(kept_bakes):
         relight(kept, room_with_block(), stop)
 
 
-def test_a_kept_transport_is_what_bake_gives_with_its_result(kept_bakes):
+def test_nothing_is_kept_where_it_is_not_asked_for(kept_bakes):
     result, kept = kept_bakes("one lamp", output="ORIGINAL")
     assert isinstance(kept, KeptTransport)
-    assert same_bytes(result, bake(room_with_block(), BakeSettings(**COARSE, output="ORIGINAL")))
+    without = bake(room_with_block(), BakeSettings(**COARSE, output="ORIGINAL", keep_transport=False))
+    assert without.kept is None
+    assert same_bytes(result, without)
