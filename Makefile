@@ -33,7 +33,7 @@ else
 	@$(MAIN) -m tools.run_tests "blender py"
 endif
 
-# make bench BENCH="--scene statue --fresh" measures one scene, and the other programs again; --help tells more.
+# make bench BENCH="--scene statue --answers fresh" measures one scene, and the other programs again; --help tells more.
 bench: ## Compare with other programs: accuracy, seconds, charts, docs/performance.md
 	@$(PYTHON) -m tools.environments bench
 	@$(MAIN) -m bench $(BENCH)

@@ -4,7 +4,8 @@
 
 Writes `out/bench/SCENE.json` after every measurement, so that scenes can be measured one by one, and then, from all
 that are there, the charts in `out/images` and the page `out/performance.md`; of a whole run also those in `docs`. What
-peers took is remembered in `.cache`, and measured again with `--fresh`, as it should be for a page that is published.
+peers answered is remembered in `.cache`; for a page that is published it should be measured in the same run, with
+`--answers fresh`.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from .machine import OUT, write_json
 from .measure import Judged, Measured, judged, measure, operator_costs
 from .methods import BENCH_SCENES, OURS, RULE, UNIFORM
 from .peers import Run, runs_of
-from .remembered import Remembered, answered
+from .remembered import Remembered, answered, known_answer
 from .scenes import SCENES, even_size
 
 PEERS = ("mitsuba", "radiance", "cycles")
@@ -69,9 +70,9 @@ def baked(method: str, setting: str, measured: Measured) -> Entry:
     }
 
 
-def theirs(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Iterator[Entry]:
-    """Yield what the peers give at each of their settings, from disk where it is known and not asked `fresh`."""
-    for asked, known in affordable(case, peers, run, fresh):
+def theirs(case: Judged, peers: tuple[str, ...], run: str, which: str) -> Iterator[Entry]:
+    """Yield what the peers give at each of their settings; `which` of them are measured is as on the command line."""
+    for asked, known in affordable(case, peers, run, which):
         answer = known.answer
         yield {
             "method": asked.method,
@@ -83,13 +84,15 @@ def theirs(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Itera
         }
 
 
-def affordable(case: Judged, peers: tuple[str, ...], run: str, fresh: bool) -> Iterator[tuple[Run, Remembered]]:
+def affordable(case: Judged, peers: tuple[str, ...], run: str, which: str) -> Iterator[tuple[Run, Remembered]]:
     """Yield the answers of the peers, each cheapest setting first, until one was too dear."""
     dear = set()
     for asked in runs_of(case, peers.__contains__):
         if asked.method in dear:
             continue
-        known = answered(case, asked, run, fresh)
+        known = known_answer(case, asked) if which == "known" else answered(case, asked, run, which == "fresh")
+        if known is None:
+            continue
         yield asked, known
         if known.answer.cost.processor_seconds > MOST_PROCESSOR_SECONDS:
             dear.add(asked.method)
@@ -109,7 +112,7 @@ def measure_scene(name: str, asked: argparse.Namespace, run: str) -> None:
     }
     entries: list[Entry] = []
     qualities, peers = tuple(asked.quality or QUALITIES), tuple(asked.peer or PEERS)
-    for each in (ours(case, qualities), theirs(case, peers, run, asked.fresh)):
+    for each in (ours(case, qualities), theirs(case, peers, run, asked.answers)):
         for entry in each:
             entries.append({"run": run, **entry})
             print(line_of(name, entry), flush=True)
@@ -132,7 +135,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--scene", action="append", choices=sorted(SCENES), help="default: the five of the page")
     parser.add_argument("--quality", action="append", choices=QUALITIES)
     parser.add_argument("--peer", action="append", choices=(*PEERS, "none"), help="default: all")
-    parser.add_argument("--fresh", action="store_true", help="measure the peers too, even where they are known")
+    parser.add_argument(
+        "--answers",
+        choices=("missing", "fresh", "known"),
+        default="missing",
+        help="of the peers: measure what is missing (the default), everything afresh, or nothing",
+    )
     parser.add_argument("--publish", action="store_true", help="write docs/performance.md though not all was run")
     parser.add_argument("--probes", type=int, default=4000)
     parser.add_argument("--parts", type=int, default=0, help="of the reference, for a quick one: 0 takes what is due")

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -44,6 +45,25 @@ class Remembered:
     run: str
 
 
+def known_answer(case: Judged, asked: Run) -> Remembered | None:
+    """Return a peer's answer from disk, or None."""
+    path = place_of(case, asked)
+    if not path.exists():
+        return None
+    with np.load(path) as stored:
+        cost = Cost(*(float(x) for x in stored["cost"]))
+        return Remembered(Answer(stored["irradiance"], cost, int(stored["points"])), str(stored["run"]))
+
+
+def place_of(case: Judged, asked: Run) -> Path:
+    """Return the file of an answer."""
+    p = case.probes
+    version = versions().get(PACKAGE_OF_PEER[asked.peer], "")
+    place = f"{processor()} {os.cpu_count()}"
+    key = digest(case.scene, p.position, p.shading_normal, METHOD, asked.method, asked.setting, version, place)
+    return CACHE / f"{key}.npz"
+
+
 def answered(case: Judged, asked: Run, run: str, fresh: bool) -> Remembered:
     """Return a peer's answer, from disk where it is known.
 
@@ -54,18 +74,13 @@ def answered(case: Judged, asked: Run, run: str, fresh: bool) -> Remembered:
     fresh : bool
         Measure even what is known.
     """
-    p = case.probes
-    version = versions().get(PACKAGE_OF_PEER[asked.peer], "")
-    place = f"{processor()} {os.cpu_count()}"
-    key = digest(case.scene, p.position, p.shading_normal, METHOD, asked.method, asked.setting, version, place)
-    path = CACHE / f"{key}.npz"
-    if path.exists() and not fresh:
-        with np.load(path) as stored:
-            cost = Cost(*(float(x) for x in stored["cost"]))
-            return Remembered(Answer(stored["irradiance"], cost, int(stored["points"])), str(stored["run"]))
+    known = None if fresh else known_answer(case, asked)
+    if known is not None:
+        return known
     answer = asked.answer(case)
     cost = answer.cost
     CACHE.mkdir(parents=True, exist_ok=True)
+    path = place_of(case, asked)
     temporary = path.with_suffix(f".{os.getpid()}.npz")
     np.savez(
         temporary,
