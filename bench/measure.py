@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -112,4 +112,6 @@ def measure(case: Judged, settings: BakeSettings) -> Measured:
     """Bake, and compare."""
     result, cost = timed(lambda: bake(case.scene, settings))
     values = irradiance_at_probes(result, case.probes)
+    # What is kept for relighting would fill the memory with every measurement.
+    result = replace(result, kept=None)
     return Measured(cost, result.report, compare(case.scene, case.probes, values, case.reference), result)
