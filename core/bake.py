@@ -76,6 +76,9 @@ WORKING_COPIES = 6
 CELLS_ALONG_PATCH = 4.0
 """Cells along the edge of the smallest patch, in which what rays look up is interpolated."""
 
+CELLS_ALONG_FACE = 2.0
+"""The same along that of the smallest face, where faces are not smaller than patches."""
+
 BYTES_PER_PLACE = 4
 """Kept for every gather ray: the place it met."""
 
@@ -146,7 +149,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         tree,
         transport.locator,
         transport.unlit_side,
-        smallest / CELLS_ALONG_PATCH,
+        max(smallest / CELLS_ALONG_PATCH, finest / CELLS_ALONG_FACE),
         cover,
         COVER_GAP * rays.scale * finest,
     )

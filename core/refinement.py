@@ -155,16 +155,19 @@ def _highest_factors(transport: Transport, shares: Shares, threshold: float) -> 
     """The largest form factor from any element to each node, (nodes,).
 
     The counted share of rays decides where it is more than its standard error away from the threshold. Where the rays
-    cannot tell, the pair that couples most strongly by its distance and angles is computed in closed form: rays have
-    met, so it is not hidden, and what hides a part of it makes the fragment one that is rather split.
+    cannot tell, one pair is computed in closed form: of those with the largest share the one that couples most strongly
+    by its distance and angles. Rays have met, so it is not hidden, and what hides a part of it makes the fragment one
+    that is rather split.
     """
     highest = np.zeros(len(transport.tree))
     node = shares.source >> 1
-    error = shares.standard_error()
-    unsure = np.abs(shares.share - threshold) <= error
+    unsure = np.abs(shares.share - threshold) <= shares.standard_error()
     np.maximum.at(highest, node[~unsure], shares.share[~unsure])
-    unsure &= highest[node] <= threshold
-    receiver, source = shares.receiver[unsure], shares.source[unsure]
+    open_pairs = np.flatnonzero(unsure & (highest[node] <= threshold))
+    largest = np.zeros(len(transport.tree))
+    np.maximum.at(largest, node[open_pairs], shares.share[open_pairs])
+    chosen = open_pairs[shares.share[open_pairs] == largest[node[open_pairs]]]
+    receiver, source = shares.receiver[chosen], shares.source[chosen]
     strength = transport.coupling(receiver, source)
     # The strongest pair of each node comes last.
     order = np.lexsort((receiver, strength, source >> 1))
@@ -176,6 +179,8 @@ def _highest_factors(transport: Transport, shares: Shares, threshold: float) -> 
 
 def _why_ended(transport: Transport, threshold: float) -> str:
     shares = transport.shares_to(np.ones(2 * len(transport.tree), dtype=bool))
+    if (shares.share - shares.standard_error() > threshold).any():
+        return SIZE_MET
     return SIZE_MET if (_highest_factors(transport, shares, threshold) > threshold).any() else THRESHOLD_MET
 
 

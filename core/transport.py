@@ -214,16 +214,17 @@ class Transport:
         It is the form factor to a small source of the same area, and stays below 1 where they touch.
         """
         tree = self.tree
-        middle = tree.points[tree.corners].mean(axis=1).astype(np.float32)
-        toward = middle[sources >> 1] - middle[receivers >> 1]
+        a, b, c = (tree.points[tree.corners[:, k]] for k in range(3))
+        middle = ((a + b + c) / 3.0).astype(np.float32)
+        area = (np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0).astype(np.float32)
+        normal = self.surfaces.normals[tree.triangle].astype(np.float32)
+        receiver, source = receivers >> 1, sources >> 1
+        toward = middle[source] - middle[receiver]
         square = np.einsum("px,px->p", toward, toward)
-        a, b, c = (tree.points[tree.corners[sources >> 1, k]] for k in range(3))
-        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
-        cosines = [
-            np.abs(np.einsum("px,px->p", toward, element_normals(self.surfaces, tree, elements)))
-            for elements in (receivers, sources)
-        ]
-        result: Floats = cosines[0] * cosines[1] * area / (square * (np.pi * square + area))
+        cosines = np.einsum("px,px->p", toward, normal[receiver]) * np.einsum("px,px->p", toward, normal[source])
+        size = area[source]
+        with np.errstate(invalid="ignore"):
+            result: Floats = np.abs(cosines) * size / (square * (np.pi * square + size))
         return np.nan_to_num(result)
 
     def unoccluded_factors(self, receivers: Ints, sources: Ints) -> Floats:
