@@ -19,8 +19,9 @@ from .cutting import cut_receivers, find_cuts
 from .detail import FaceSizes, Sides, light_up, light_up_in_detail
 from .direct import strongest_emitters
 from .gather import Gathered, GatherRays, gather, hidden_receivers
+from .interpolation import PlacesOnFaces
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
-from .patches import PatchTree, coarse_patches
+from .patches import coarse_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
@@ -156,7 +157,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     sides = Sides(lit, transport.enclosed_shells())
     aside = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
     aside |= transport.is_enclosed(cells.element, sides.enclosed)
-    patches = TracedPatches(len(tree), balance, emitters, direct, cells, aside)
+    patches = TracedPatches(len(tree), balance, emitters, direct, cells)
     light = light_of_patches(patches, surfaces)
     traced = rays.rays
 
@@ -171,14 +172,15 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
-    cuts = None
+    cuts, on_faces = None, None
     if settings.output == "ORIGINAL":
-        shown, leaves = light_up(surfaces, sides, input_faces(surfaces), gather_at), PatchTree(surfaces)
+        shown = light_up(surfaces, sides, input_faces(surfaces), gather_at)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
         shown, leaves = light_up_in_detail(surfaces, sides, tree, sizes, effort.tolerance, gather_at, is_hidden)
         if shown.gathered.places.shape[1]:
-            shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, leaves)
+            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)
+            shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
         edges = find_cuts(shown.faces, shown.places, shown.gathered.hidden, is_hidden)
         cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
@@ -208,7 +210,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     if not settings.keep_transport:
         return result
     return replace(
-        result, kept=keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, leaves, cuts, story))
+        result, kept=keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, story))
     )
 
 

@@ -16,7 +16,7 @@ from .cells import Cells
 from .detail import Lit
 from .direct import LUMINANCE
 from .patches import PatchTree
-from .scene import Floats, Ints
+from .scene import Floats
 from .surfaces import Surfaces
 
 STEEP = 1.0
@@ -27,17 +27,13 @@ MOST_CORRECTED = 0.1
 """Share by which the light at the vertices is made to agree with the patches' power at most."""
 
 
-class InterpolatedRadiance:
-    """Radiance of each place from the irradiance at the vertices around it.
+class PlacesOnFaces:
+    """Where the places that rays met lie on the faces: all of the interpolation that does not depend on light.
 
     Parameters
     ----------
     tree : PatchTree
         Whose leaves the shown faces lie in: a further subdivision of the one that `cells` were made of.
-    emission : (triangles, 3) float, W m^-2 sr^-1
-        Emitted radiance that rays are to see.
-    solved : (places, 3) float
-        What places show that lie on no face: meshes that are not baked, twins of covered elements.
     met : (n, r) int32
         What rays met: other places need no radiance.
     aside : (places,) bool
@@ -45,49 +41,58 @@ class InterpolatedRadiance:
         inside a solid in part, whose radiosity is that of the rest, and on enclosed ones.
     """
 
-    def __init__(
-        self,
-        cells: Cells,
-        tree: PatchTree,
-        surfaces: Surfaces,
-        emission: Floats,
-        solved: Floats,
-        met: NDArray[np.int32],
-        aside: NDArray[np.bool_],
-    ) -> None:
-        self._tree, self._solved, self._copied = tree, solved, cells.copied
+    def __init__(self, cells: Cells, tree: PatchTree, met: NDArray[np.int32], aside: NDArray[np.bool_]) -> None:
+        self.tree, self.copied = tree, cells.copied
+        count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
-        seen = np.zeros(len(solved), dtype=bool)
+        seen = np.zeros(count, dtype=bool)
         seen[met[met >= 0]] = True
-        seen[cells.copied] |= seen[len(solved) - len(cells.copied) :]
-        self._place: Ints = np.flatnonzero(seen[: 2 * len(leaf)])
-        cell = self._place >> 1
-        self._side = 2 * leaf[cell] + (self._place & 1)
-        self._whole = leaf[cell] == cells.element[self._place] >> 1
-        self._areas = cells.areas[cell]
-        self._open = ~aside[self._place]
+        seen[cells.copied] |= seen[count - len(cells.copied) :]
+        self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)
+        cell = self.place >> 1
+        self.side = (2 * leaf[cell] + (self.place & 1)).astype(np.int32)
+        self.whole = leaf[cell] == cells.element[self.place] >> 1
+        self.areas = cells.areas[cell]
+        self.open = ~aside[self.place]
         u, v = weights[cell, 0], weights[cell, 1]
-        self._shares = [np.asarray(share, dtype=np.float32)[:, None] for share in (1.0 - u - v, u, v)]
-        triangle = tree.triangle[leaf[cell]]
-        self._reflectance = surfaces.reflectance.astype(np.float32)[triangle]
-        self._emission = emission.astype(np.float32)[triangle]
+        self.shares = tuple(np.asarray(share, dtype=np.float32)[:, None] for share in (1.0 - u - v, u, v))
+        self.triangle = tree.triangle[leaf[cell]].astype(np.int32)
+
+
+class InterpolatedRadiance:
+    """Radiance of each place from the irradiance at the vertices around it.
+
+    Parameters
+    ----------
+    on_faces : PlacesOnFaces
+    emission : (triangles, 3) float, W m^-2 sr^-1
+        Emitted radiance that rays are to see.
+    solved : (places, 3) float
+        What places show that lie on no face: meshes that are not baked, twins of covered elements.
+    """
+
+    def __init__(self, on_faces: PlacesOnFaces, surfaces: Surfaces, emission: Floats, solved: Floats) -> None:
+        self._on_faces, self._solved = on_faces, solved
+        self._reflectance = surfaces.reflectance.astype(np.float32)[on_faces.triangle]
+        self._emission = emission.astype(np.float32)[on_faces.triangle]
 
     def at(self, shown: Lit) -> Floats:
         """Radiance of places when the vertices have the light of `shown`, (places, 3), W m^-2 sr^-1."""
-        corners = corner_irradiance_of_nodes(self._tree, shown)
-        irradiance = sum(share * corners[self._side, k] for k, share in enumerate(self._shares))
+        there = self._on_faces
+        corners = corner_irradiance_of_nodes(there.tree, shown)
+        irradiance = sum(share * corners[there.side, k] for k, share in enumerate(there.shares))
         light = corners @ LUMINANCE.astype(np.float32)
         with np.errstate(invalid="ignore"):
             steep = np.ptp(light, axis=1) > STEEP * light.mean(axis=1)
-        known = np.isfinite(irradiance[:, 0]) & ~(self._whole & steep[self._side])
+        known = np.isfinite(irradiance[:, 0]) & ~(there.whole & steep[there.side])
         result = self._solved.copy()
         reflected = self._reflectance * irradiance
         reflected *= self._balanced(reflected, known)
-        result[self._place[known]] = (self._emission + reflected)[known]
+        result[there.place[known]] = (self._emission + reflected)[known]
         lit = np.zeros(len(result), dtype=bool)
-        lit[self._place[known]] = True
-        copies = len(result) - len(self._copied) + np.flatnonzero(lit[self._copied])
-        result[copies] = result[self._copied[lit[self._copied]]]
+        lit[there.place[known]] = True
+        copies = len(result) - len(there.copied) + np.flatnonzero(lit[there.copied])
+        result[copies] = result[there.copied[lit[there.copied]]]
         return result
 
     def _balanced(self, reflected: NDArray[np.float32], known: NDArray[np.bool_]) -> Floats:
@@ -96,9 +101,10 @@ class InterpolatedRadiance:
         Straight lines between vertices cut the tops off: the faces tell how light is spread, the patches how much
         there is of it.
         """
-        counted = known & self._open
-        solved = self._solved[self._place[counted]] - self._emission[counted]
-        power, drawn = (self._areas[counted] @ light for light in (solved, reflected[counted].astype(np.float64)))
+        there = self._on_faces
+        counted = known & there.open
+        solved = self._solved[there.place[counted]] - self._emission[counted]
+        power, drawn = (there.areas[counted] @ light for light in (solved, reflected[counted].astype(np.float64)))
         ratio = np.divide(power, drawn, out=np.ones(3), where=drawn > 0.0)
         corrected: Floats = np.clip(ratio, 1.0 - MOST_CORRECTED, 1.0 + MOST_CORRECTED)
         return corrected

@@ -19,9 +19,8 @@ from .direct import Emitters
 from .direct_light import DirectLight
 from .errors import NoLightError
 from .gather import Gathered, look_again
-from .interpolation import InterpolatedRadiance
+from .interpolation import InterpolatedRadiance, PlacesOnFaces
 from .output import baked_meshes
-from .patches import PatchTree
 from .result import BakeResult
 from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
@@ -52,8 +51,6 @@ class TracedPatches:
     direct : DirectLight
         Of the m elements.
     cells : Cells
-    aside : (places,) bool
-        Places that say nothing of the power that the vertices' light should have.
     """
 
     nodes: int
@@ -61,7 +58,6 @@ class TracedPatches:
     emitters: Emitters
     direct: DirectLight
     cells: Cells
-    aside: NDArray[np.bool_]
 
     def recoloured(self, surfaces: Surfaces) -> TracedPatches:
         """The same patches, with the colours that `surfaces` have."""
@@ -131,13 +127,11 @@ def looked_again(
     light: PatchLight,
     surfaces: Surfaces,
     shown: Lit,
-    leaves: PatchTree,
+    on_faces: PlacesOnFaces,
 ) -> tuple[Lit, Radiance]:
     """Look the gather rays up again in the light of the vertices; returns the faces' light and what rays saw last."""
     left = left_emission(surfaces, patches.emitters)
-    interpolated = InterpolatedRadiance(
-        patches.cells, leaves, surfaces, left, light.seen, shown.gathered.places, patches.aside
-    )
+    interpolated = InterpolatedRadiance(on_faces, surfaces, left, light.seen)
     for _ in range(LOOKS):
         radiance = Radiance.of(patches.cells, interpolated.at(shown), surfaces.world)
         shown = replace(shown, gathered=look_again(workers, radiance, shown.gathered))

@@ -17,6 +17,7 @@ from .cells import Radiance
 from .clock import Clock
 from .detail import Lit
 from .errors import BakeError
+from .interpolation import PlacesOnFaces
 from .lighting import (
     Story,
     TracedCuts,
@@ -27,7 +28,6 @@ from .lighting import (
     relit,
     result_of,
 )
-from .patches import PatchTree
 from .progress import ProgressCallback, no_progress
 from .result import BakeResult
 from .scene import Scene, SurfaceMesh
@@ -53,8 +53,8 @@ class KeptTransport:
     patches : TracedPatches
     shown : Lit
         Faces and what was gathered at them.
-    leaves : PatchTree
-        In whose leaves the faces lie.
+    on_faces : PlacesOnFaces or None
+        None where rays are not looked up in the light of the vertices.
     cuts : TracedCuts or None
     story : Story
     """
@@ -64,7 +64,7 @@ class KeptTransport:
     lit: NDArray[np.bool_]
     patches: TracedPatches
     shown: Lit
-    leaves: PatchTree
+    on_faces: PlacesOnFaces | None
     cuts: TracedCuts | None
     story: Story
 
@@ -165,8 +165,8 @@ def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Wor
     radiance = Radiance.of(patches.cells, light.seen, surfaces.world)
     shown = replace(kept.shown, gathered=relit(workers, patches.emitters, radiance, kept.shown.gathered))
     cuts = kept.cuts
-    if kept.story.settings.output == "REFINED":
-        shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.leaves)
+    if kept.on_faces is not None:
+        shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.on_faces)
     if cuts is not None:
         seen, hidden = (relit(workers, patches.emitters, radiance, side) for side in (cuts.seen, cuts.hidden))
         cuts = TracedCuts(cuts.edges, seen, hidden)
