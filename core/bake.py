@@ -21,7 +21,7 @@ from .direct import strongest_emitters
 from .gather import Gathered, GatherRays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
-from .patches import coarse_patches
+from .patches import clustered_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
@@ -95,7 +95,7 @@ GATHER_SHARE = 0.6
 FEWEST_RAYS_PER_PATCH = 16
 
 MOST_RAYS = 2**25
-"""Rays of the coarsest patches: above it each gets fewer, as the many patches of a dense mesh average out."""
+"""Rays of the coarsest patches: above it each gets fewer, as the rays of many patches together average out."""
 
 
 def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress) -> BakeResult:
@@ -129,9 +129,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     automatic = not settings.minimum_size and settings.method == "ADAPTIVE"
     finest = finest_size(surfaces, effort) if automatic else smallest
     finest_cut = finest / FINER_CUTS if automatic else smallest
-    tree = coarse_patches(surfaces, smallest)
+    tree = clustered_patches(surfaces, min(smallest, automatic_size(surfaces, effort)))
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
-    per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.leaves()))
+    per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
     transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
 
     clock.start("Form factors", 0.03, 0.4)
@@ -189,7 +189,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
     counts: dict[str, Any] = {
         "relit": False,
-        "patches": len(tree.leaves()),
+        "patches": len(tree.patches()),
         "rays": rays.rays,
         "rays_by_kind": {
             "walks": walked,
@@ -248,12 +248,12 @@ def subdivide(
     tree, surfaces = transport.tree, transport.surfaces
 
     def seeds() -> Ints:
-        leaves = tree.leaves()
-        leaves = leaves[surfaces.baked[tree.triangle[leaves]]]
-        behind = leaves[lit[surfaces.shell_of_triangle[tree.triangle[leaves]], 1]]
-        return np.sort(np.concatenate([2 * leaves, 2 * behind + 1]))
+        patches = tree.patches()
+        patches = patches[surfaces.baked[tree.triangle[patches]]]
+        behind = patches[lit[surfaces.shell_of_triangle[tree.triangle[patches]], 1]]
+        return np.sort(np.concatenate([2 * patches, 2 * behind + 1]))
 
-    report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.leaves()):,} patches, {transport.rays.rays:,} rays")
+    report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.patches()):,} patches, {transport.rays.rays:,} rays")
     if settings.method == "ADAPTIVE":
         return refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report)
     return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report)
@@ -268,7 +268,7 @@ def limit_warnings(
         warnings.append("The memory limit ended the subdivision early; raise it or the minimum size for an even result")
     if rays_per_patch < effort.rays_per_patch:
         warnings.append(
-            f"For the memory limit or the number of triangles, each patch was given {rays_per_patch} rays only"
+            f"For the memory limit or the number of patches, each patch was given {rays_per_patch} rays only"
         )
     if crowded:
         warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")

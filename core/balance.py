@@ -26,6 +26,34 @@ SHADOW_RAYS_PER_POINT = 8
 
 
 @dataclass(frozen=True, eq=False)
+class TriangleMeans:
+    """Means over elements of what triangles have, by area.
+
+    Attributes
+    ----------
+    count : int
+        Elements.
+    element, triangle : (p,) int
+        An entry for each triangle of a cluster, and one for what lies in a triangle.
+    weight : (p,) float
+        They add up to 1 for each element.
+    """
+
+    count: int
+    element: Ints
+    triangle: Ints
+    weight: Floats
+
+    def of(self, values: Floats) -> Floats:
+        """Mean over each element, (count, k), of values (triangles, k)."""
+        columns = [
+            np.bincount(self.element, weights=self.weight * column[self.triangle], minlength=self.count)
+            for column in values.T
+        ]
+        return np.stack(columns, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
 class Balance:
     """The traced elements and twins, numbered 0 to m - 1, and their form factors.
 
@@ -42,8 +70,7 @@ class Balance:
         Area that is not inside a solid.
     buried : (m,) float
         Share of the area that is.
-    triangle : (m,) int
-        The surfaces' triangle that each lies in.
+    means : TriangleMeans
     reflectance, emission : (m, 3) float
     """
 
@@ -53,13 +80,14 @@ class Balance:
     escape: Floats
     areas: Floats
     buried: Floats
-    triangle: Ints
+    means: TriangleMeans
     reflectance: Floats
     emission: Floats
 
     def recoloured(self, surfaces: Surfaces) -> Balance:
         """The same elements, with the reflectance and emission that `surfaces` have."""
-        return replace(self, reflectance=surfaces.reflectance[self.triangle], emission=surfaces.emission[self.triangle])
+        means = self.means
+        return replace(self, reflectance=means.of(surfaces.reflectance), emission=means.of(surfaces.emission))
 
 
 def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
@@ -77,18 +105,17 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     share = np.ones(len(elements))
     share[number[twins]] = cover.covered.mean(axis=1)
     share[number[cover.element]] -= cover.covered.mean(axis=1)
-    triangle = tree.triangle[base >> 1]
-    a, b, c = (tree.points[tree.corners[base >> 1, k]] for k in range(3))
+    means = TriangleMeans(len(base), *tree.expanded(base >> 1))
     return Balance(
         elements,
         base,
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
-        np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0 * (1.0 - buried) * share,
+        tree.areas(base >> 1) * (1.0 - buried) * share,
         buried,
-        triangle,
-        surfaces.reflectance[triangle],
-        surfaces.emission[triangle],
+        means,
+        means.of(surfaces.reflectance),
+        means.of(surfaces.emission),
     )
 
 
@@ -138,7 +165,7 @@ def unreflected_light(balance: Balance, direct: DirectLight, emitters: Emitters,
         What the elements get of the emitters.
     """
     left = left_emission(surfaces, emitters)
-    by_rays = balance.exchange.apply(left[balance.triangle])
+    by_rays = balance.exchange.apply(balance.means.of(left))
     return direct.irradiance(emitters.radiance) + by_rays + balance.escape[:, None] * surfaces.world
 
 
@@ -151,23 +178,29 @@ def _direct_at(
     report: Callable[[float], None],
 ) -> DirectLight:
     """Direct light at points of elements, (k, p, 3), as of k p receivers."""
-    count = points.shape[1]
+    total, count = points.shape[:2]
+    on_plane = np.all(normals == normals[:, :1], axis=(1, 2))
+    parts = []
+    for rows, neighbours in ((np.flatnonzero(on_plane), count), (np.flatnonzero(~on_plane), 1)):
 
-    def work(first: int, last: int) -> DirectLight:
-        at, axis = points[first:last].reshape(-1, 3), normals[first:last].reshape(-1, 3)
-        keys = (elements[first:last, None] * count + np.arange(count)).ravel()
-        light, _ = direct_light(
-            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, count
-        )
-        return light
+        def work(first: int, last: int, rows: Ints = rows, neighbours: int = neighbours) -> DirectLight:
+            part = rows[first:last]
+            at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
+            keys = (elements[part, None] * count + np.arange(count)).ravel()
+            light, _ = direct_light(
+                emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, neighbours
+            )
+            return light
 
-    return DirectLight.stacked(transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report))
+        light = DirectLight.stacked(transport.rays.map(work, len(rows), count * SHADOW_RAYS_PER_POINT, report))
+        parts.append(light.renumbered((rows[:, None] * count + np.arange(count)).ravel(), total * count))
+    return DirectLight.joined(parts)
 
 
 def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Emitters, surfaces: Surfaces) -> Floats:
     """What gather rays see on each element and twin: reflected light, and emission that is not sampled explicitly."""
     values = np.zeros((max(2 * nodes, int(balance.elements.max(initial=0)) + 1), 3))
-    values[balance.elements] = solution.reflected + left_emission(surfaces, emitters)[balance.triangle]
+    values[balance.elements] = solution.reflected + balance.means.of(left_emission(surfaces, emitters))
     return values
 
 

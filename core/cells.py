@@ -99,7 +99,7 @@ class Cells:
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
         self.areas: Floats = np.repeat(area / cells, cells)
         leaf, _ = tree.descend(self.node, self.centre)
-        element = (2 * leaf[:, None] + np.arange(2)).ravel()
+        element = (2 * tree.patch[leaf][:, None] + np.arange(2)).ravel()
         twin = cover.twin[element]
         self.copied: Ints = np.flatnonzero(twin >= 0)
         self._reach = np.where(twin >= 0, cover.reach[element], np.float32(0.0))

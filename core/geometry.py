@@ -19,6 +19,13 @@ def triangle_cross(points: Floats, triangles: Ints) -> Floats:
     return np.cross(b - a, c - a)
 
 
+def triangle_areas(corners: Floats) -> Floats:
+    """Areas of triangles from their corners (t, 3, 3), (t,)."""
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    result: Floats = np.linalg.norm(cross, axis=1) / 2.0
+    return result
+
+
 def normalized(vectors: Floats) -> Floats:
     """Vectors of length 1 along the last axis; the zero vector stays zero."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
@@ -29,6 +36,26 @@ def edge_lengths(points: Floats, triangles: Ints) -> Floats:
     """Lengths of the edges 0-1, 1-2 and 2-0 of each triangle, (t, 3)."""
     corners = points[triangles]
     return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+
+
+def along_curve(points: Floats) -> Ints:
+    """Numbers by which points (n, 3) lie along Morton's space-filling curve, 2^21 steps on each axis, (n,)."""
+    low = points.min(axis=0)
+    extent = float((points.max(axis=0) - low).max())
+    code = np.zeros(len(points), dtype=np.int64)
+    for axis in range(3):
+        bits = ((points[:, axis] - low[axis]) * ((2**21 - 1) / extent if extent > 0.0 else 0.0)).astype(np.int64)
+        # Each step doubles the gaps between groups of bits, until two zeros follow each bit.
+        for shift, mask in (
+            (32, 0x1F00000000FFFF),
+            (16, 0x1F0000FF0000FF),
+            (8, 0x100F00F00F00F00F),
+            (4, 0x10C30C30C30C30C3),
+            (2, 0x1249249249249249),
+        ):
+            bits = (bits | bits << shift) & mask
+        code |= bits << axis
+    return code
 
 
 def welded(points: Floats) -> Ints:

@@ -40,6 +40,7 @@ class Locator:
         self._leaf = np.empty(int(cells.sum()), dtype=np.int32)
         for level in np.unique(depth):
             self._fill(roots[depth == level], int(level))
+        self._leaf = np.where(self._leaf < 0, -1, tree.patch[self._leaf]).astype(np.int32)
         self._scale = (2.0**self._depth).astype(np.float32)
 
     def _fill(self, roots: Ints, level: int) -> None:
@@ -64,7 +65,7 @@ class Locator:
         return root
 
     def leaves(self, root: NDArray[np.int32], weights: NDArray[np.float32]) -> NDArray[np.int32]:
-        """The leaf under each point of coarse patches, (n,)."""
+        """The leaf under each point of coarse patches, or the cluster it is in, (n,)."""
         depth, scale = self._depth[root], self._scale[root]
         u, v = weights[:, 0] * scale, weights[:, 1] * scale
         last = scale.astype(np.int32) - 1

@@ -1,13 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The hierarchy of patches: triangles that split at their edge midpoints."""
+"""The hierarchy of patches: triangles that split at their edge midpoints, and clusters of triangles above them."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .geometry import edge_lengths
+from .clusters import Clusters, cluster_triangles
+from .geometry import edge_lengths, normalized, triangle_areas, triangle_cross
+from .sampling import frames
 from .scene import Floats, Ints
 from .surfaces import Surfaces
 
@@ -22,7 +26,8 @@ class PatchTree:
     """Triangles, each either a leaf or split into two or four children.
 
     Vertices are shared: an edge has one midpoint, whichever triangles of its mesh meet there, so leaves of equal level
-    fit together. A node's children follow each other.
+    fit together. A node's children follow each other. What light is exchanged between are the `patches`: leaves, or the
+    clusters that they are members of.
 
     Attributes
     ----------
@@ -41,9 +46,15 @@ class PatchTree:
     kind : (n,) int
         How the node is split (`FOUR` or the halved edge).
     root : (n,) int
-        The coarse patch each node was split from by midpoints; -1 for triangles that were halved into coarse patches.
+        The coarse patch each node was split from by midpoints; -1 for triangles that were halved into coarse patches,
+        and a member for clusters, which are none.
     level : (n,) int
         Splits by midpoints below its coarse patch.
+    patch : (n,) int
+        The patch that stands for each leaf: itself, or the cluster it is in. -1 for a cluster that is no patch.
+    clusters : Clusters
+        Their members are nodes; they are nodes themselves, from `first_cluster` on. Their corners are those of a right
+        isosceles triangle that is as large, at the same place, and their triangle is a typical one of theirs.
     """
 
     def __init__(self, surfaces: Surfaces) -> None:
@@ -59,6 +70,9 @@ class PatchTree:
         self.kind: NDArray[np.int8] = np.full(count, FOUR, dtype=np.int8)
         self.root: Ints = np.arange(count, dtype=np.int64)
         self.level: Ints = np.zeros(count, dtype=np.int64)
+        self.patch: Ints = np.arange(count, dtype=np.int64)
+        self.clusters = Clusters.none()
+        self.first_cluster = 0
         self._edge_keys: Ints = np.zeros(0, dtype=np.int64)
         self._edge_midpoints: Ints = np.zeros(0, dtype=np.int64)
 
@@ -72,15 +86,113 @@ class PatchTree:
         other.first_child = self.first_child.copy()
         other.kind = self.kind.copy()
         other.root = self.root.copy()
+        other.patch = self.patch.copy()
         return other
 
     def leaves(self) -> Ints:
-        """Indices of the nodes that are not split, (m,)."""
-        return np.flatnonzero(self.first_child < 0)
+        """Indices of the triangles that are not split, (m,)."""
+        leaf = self.first_child < 0
+        leaf[self.first_cluster : self.first_cluster + len(self.clusters)] = False
+        return np.flatnonzero(leaf)
+
+    def patches(self) -> Ints:
+        """Indices of the leaves and clusters that exchange light, (m,): together they are the whole surface."""
+        return np.flatnonzero(self.is_patch())
+
+    def is_patch(self) -> NDArray[np.bool_]:
+        """Whether each node is one of `patches`, (n,)."""
+        result: NDArray[np.bool_] = (self.patch == np.arange(len(self))) & (self.first_child < 0)
+        return result
+
+    def is_cluster(self, nodes: Ints) -> NDArray[np.bool_]:
+        """Whether nodes are clusters, of the same shape."""
+        result: NDArray[np.bool_] = (nodes >= self.first_cluster) & (nodes < self.first_cluster + len(self.clusters))
+        return result
 
     def sizes(self, nodes: Ints) -> Floats:
         """Longest edge of each node, (m,), scene units."""
         return edge_lengths(self.points, self.corners[nodes]).max(axis=1, initial=0.0)
+
+    def areas(self, nodes: Ints) -> Floats:
+        """Area of each node, (m,), scene units squared."""
+        return triangle_areas(self.points[self.corners[nodes]])
+
+    def expanded(self, nodes: Ints) -> tuple[Ints, Ints, Floats]:
+        """The surfaces' triangles that nodes (m,) consist of or lie in.
+
+        Returns
+        -------
+        row : (p,) int
+            Places in `nodes`.
+        triangle : (p,) int
+        share : (p,) float
+            Of the node's area.
+        """
+        clustered, single = np.flatnonzero(self.is_cluster(nodes)), np.flatnonzero(~self.is_cluster(nodes))
+        number = nodes[clustered] - self.first_cluster
+        row = np.repeat(clustered, self.clusters.count[number])
+        inside = self.clusters.members_of(number)
+        share = self.areas(inside) / self.clusters.areas()[nodes[row] - self.first_cluster]
+        return (
+            np.concatenate([single, row]),
+            self.triangle[np.concatenate([nodes[single], inside])],
+            np.concatenate([np.ones(len(single)), share]),
+        )
+
+    def carriers(self, nodes: Ints, share: Floats) -> tuple[Ints, Floats]:
+        """Triangles at shares (m, r) of the area of nodes (m,).
+
+        Returns
+        -------
+        carriers : (m, r) int
+            Nodes: members of clusters, and triangles themselves.
+        remainder : (m, r) float
+            Share of the carrier's own area.
+        """
+        carriers, remainder = np.repeat(nodes[:, None], share.shape[1], axis=1), share.copy()
+        clustered = np.flatnonzero(self.is_cluster(nodes))
+        number = nodes[clustered] - self.first_cluster
+        carriers[clustered], remainder[clustered] = self.clusters.drawn(number, share[clustered])
+        return carriers, remainder
+
+    def add_clusters(self, clusters: Clusters) -> None:
+        """Let clusters of leaves, the coarsest of them, take the place of their members; once, before any split."""
+        self.clusters, self.first_cluster = clusters, len(self)
+        count, corners = len(clusters), self.corners[clusters.members]
+        normals = normalized(triangle_cross(self.points, corners))
+        example = clusters.members[clusters.typical(normals)]
+        stand_ins = _isosceles(
+            clusters.means(self.points[corners].mean(axis=1)), normalized(clusters.means(normals)), clusters.areas()
+        )
+        made = len(self.points) + np.arange(3 * count)
+        self.points = np.concatenate([self.points, stand_ins.reshape(-1, 3)])
+        self.place_of_point = np.concatenate([self.place_of_point, made])
+        self.mesh_of_point = np.concatenate([self.mesh_of_point, np.full(3 * count, -1)])
+        self.corners = np.concatenate([self.corners, made.reshape(-1, 3)])
+        self.triangle = np.concatenate([self.triangle, self.triangle[example]])
+        self.weights = np.concatenate([self.weights, self.weights[example]])
+        self.first_child = np.concatenate([self.first_child, np.full(count, -1, dtype=np.int64)])
+        self.kind = np.concatenate([self.kind, np.full(count, FOUR, dtype=np.int8)])
+        self.root = np.concatenate([self.root, self.root[example]])
+        self.level = np.concatenate([self.level, np.zeros(count, dtype=np.int64)])
+        self.patch = np.concatenate([self.patch, np.full(count, -1, dtype=np.int64)])
+        self._stand(np.flatnonzero(clusters.parent < 0))
+
+    def divide(self, patches: Ints) -> None:
+        """Split the triangles among patches, and open the clusters: what they consist of takes their place."""
+        clustered = self.is_cluster(patches)
+        opened = patches[clustered] - self.first_cluster
+        members = self.clusters.members_of(opened)
+        self.patch[members] = members
+        self.patch[patches[clustered]] = -1
+        self._stand(np.flatnonzero(np.isin(self.clusters.parent, opened)))
+        self.split(patches[~clustered])
+
+    def _stand(self, clusters: Ints) -> None:
+        """Make clusters the patches of their members."""
+        node = self.first_cluster + clusters
+        self.patch[node] = node
+        self.patch[self.clusters.members_of(clusters)] = np.repeat(node, self.clusters.count[clusters])
 
     def midpoints(self, starts: Ints, ends: Ints) -> Ints:
         """The midpoint of each edge as a point index, -1 where the edge was never halved; same shape as `starts`."""
@@ -192,7 +304,16 @@ class PatchTree:
             self.root[nodes] = -1
             root, level = children, np.zeros(len(children), dtype=np.int64)
         self.root, self.level = np.concatenate([self.root, root]), np.concatenate([self.level, level])
+        self.patch = np.concatenate([self.patch, children])
         return children
+
+
+def _isosceles(middles: Floats, normals: Floats, areas: Floats) -> Floats:
+    """Corners of right isosceles triangles about `middles` (m, 3), facing along `normals`, of areas (m,): (m, 3, 3)."""
+    tangent, bitangent = frames(normals, np.zeros(len(normals))).astype(np.float64)[:, :2].transpose(1, 0, 2)
+    side = np.sqrt(2.0 * areas)[:, None]
+    corner = middles - side * (tangent + bitangent) / 3.0
+    return np.stack([corner, corner + side * tangent, corner + side * bitangent], axis=1)
 
 
 def _child_of_four(w: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
@@ -236,4 +357,24 @@ def coarse_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
         slender = lengths.max(axis=1, initial=0.0) > limit[tree.triangle[nodes]]
         nodes, lengths = nodes[slender], lengths[slender]
         nodes = tree.bisect(nodes, lengths.argmax(axis=1))
+    return tree
+
+
+def clustered_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
+    """The controlled triangulation with clusters above the triangles that are too small to be split.
+
+    Parameters
+    ----------
+    smallest : float, scene units
+        The minimum size n. A right isosceles triangle of the size 2n, from which on patches are split, has the area
+        n^2.
+    """
+    tree = coarse_patches(surfaces, smallest)
+    leaves = tree.leaves()
+    small = leaves[tree.areas(leaves) < smallest * smallest]
+    corners = tree.corners[small]
+    clusters = cluster_triangles(
+        surfaces, tree.triangle[small], tree.points[corners], tree.place_of_point[corners], smallest
+    )
+    tree.add_clusters(replace(clusters, members=small[clusters.members]))
     return tree

@@ -97,7 +97,7 @@ def refine(
     """
     tree, rounds = transport.tree, []
     while True:
-        fragments, rays_before = len(tree.leaves()), transport.rays.rays
+        fragments, rays_before = len(tree.patches()), transport.rays.rays
         rows = trace_all(transport, seeds, report)
         flagged, largest = _flagged(transport, threshold, smallest)
         full = transport.kept_rays() + 4 * len(flagged) * transport.rays_per_row > most_rays
@@ -105,7 +105,7 @@ def refine(
             flagged = flagged[:0]
         moved = 0
         if len(flagged):
-            tree.split(flagged)
+            tree.divide(flagged)
             moved = transport.follow_splits()
         rounds.append(Round(fragments, rows, transport.rays.rays - rays_before, len(flagged), moved, float(largest)))
         if len(flagged) == 0:
@@ -123,19 +123,19 @@ def refine_uniformly(
     """Split every leaf of size m = 2n or more, down to the minimum size n, then trace."""
     tree, rounds, ended = transport.tree, [], UNIFORM_MET
     while True:
-        leaves = tree.leaves()
-        large = leaves[tree.sizes(leaves) >= 2.0 * smallest]
+        patches = tree.patches()
+        large = patches[tree.sizes(patches) >= 2.0 * smallest]
         if len(large) == 0:
             break
-        if (len(leaves) + 3 * len(large)) * transport.rays_per_row > most_rays:
+        if (len(patches) + 3 * len(large)) * transport.rays_per_row > most_rays:
             ended = LIMIT_MET
             break
-        rounds.append(Round(len(leaves), 0, 0, len(large), 0, 0.0))
-        tree.split(large)
+        rounds.append(Round(len(patches), 0, 0, len(large), 0, 0.0))
+        tree.divide(large)
     transport.follow_splits()
     before = transport.rays.rays
     rows = trace_all(transport, seeds, report)
-    rounds.append(Round(len(tree.leaves()), rows, transport.rays.rays - before, 0, 0, 0.0))
+    rounds.append(Round(len(tree.patches()), rows, transport.rays.rays - before, 0, 0, 0.0))
     return Refinement(tuple(rounds), ended)
 
 
@@ -143,8 +143,8 @@ def _flagged(transport: Transport, threshold: float, smallest: float) -> tuple[I
     """Leaves to split, and the largest form factor to a leaf that may be."""
     tree = transport.tree
     splittable = np.zeros(len(tree), dtype=bool)
-    leaves = tree.leaves()
-    splittable[leaves] = tree.sizes(leaves) >= 2.0 * smallest
+    patches = tree.patches()
+    splittable[patches] = tree.sizes(patches) >= 2.0 * smallest
     if not splittable.any():
         return np.zeros(0, dtype=np.int64), 0.0
     highest = _highest_factors(transport, transport.shares_to(np.repeat(splittable, 2)), threshold)

@@ -59,6 +59,14 @@ def hashed(keys: Ints, dimensions: int, seed: int) -> Floats:
     return (mixed >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
 
+def radical_inverse(first: int, count: int) -> Floats:
+    """Numbers `first` to `first + count - 1` of van der Corput's sequence in base 2, (count,), in [0, 1)."""
+    index = np.arange(first, first + count)
+    bits = (index[:, None] >> np.arange(32)) & 1
+    result: Floats = bits @ 0.5 ** np.arange(1, 33)
+    return result
+
+
 def shifted(points: Floats, shifts: Floats) -> Floats:
     """Points (r, d) shifted for each of n receivers by (n, d), wrapped into [0, 1): (n, r, d)."""
     moved = points[None, :, :] + shifts[:, None, :]
@@ -138,10 +146,14 @@ class Patterns:
         About +z, with density cos / pi.
     positions : (PATTERNS, r, 3) float32
         (1, u, v) with the barycentric weights of corners 1 and 2.
+    shares : (r,) float
+        Where the rays leave a cluster, as shares of its triangles' area laid end to end: evenly spread, and by another
+        sequence than the directions, or the two would go together.
     """
 
     directions: Singles
     positions: Singles
+    shares: Floats
 
     @staticmethod
     def make(first: int, count: int, seed: int) -> Patterns:
@@ -151,7 +163,8 @@ class Patterns:
         points = shifted(sequence(first, count, 4), shifts)
         weights = triangle_weights(points[..., :2])
         positions = np.concatenate([np.ones((*weights.shape[:2], 1)), weights], axis=-1)
-        return Patterns(hemisphere(points[..., 2:]).astype(np.float32), positions.astype(np.float32))
+        directions = hemisphere(points[..., 2:]).astype(np.float32)
+        return Patterns(directions, positions.astype(np.float32), radical_inverse(first, count))
 
     def choose(self, keys: Ints, seed: int) -> tuple[Ints, Floats]:
         """The pattern of each receiver and the angle it is turned by, both (n,)."""

@@ -53,9 +53,19 @@ def points_in(tree: PatchTree, nodes: Ints, weights: Floats) -> Floats:
 def sample_points(surfaces: Surfaces, tree: PatchTree, elements: Ints, count: int, seed: int) -> tuple[Floats, Floats]:
     """Points spread over elements and the normals there, both (m, count, 3)."""
     square = shifted(sequence(0, count, 2), hashed(elements, 2, seed))
-    points = points_in(tree, elements >> 1, triangle_weights(square))
-    normals = element_normals(surfaces, tree, elements)
-    return points, np.broadcast_to(normals[:, None], points.shape)
+    carriers, remainder = tree.carriers(elements >> 1, square[..., 0])
+    weights = triangle_weights(np.stack([remainder, square[..., 1]], axis=-1))
+    return points_on(surfaces, tree, elements, carriers, weights)
+
+
+def points_on(
+    surfaces: Surfaces, tree: PatchTree, elements: Ints, carriers: Ints, weights: Floats
+) -> tuple[Floats, Floats]:
+    """Positions of barycentric weights (m, r, 2) in triangles (m, r) of elements (m,), and normals, both (m, r, 3)."""
+    nodes = carriers.ravel()
+    points = points_in(tree, nodes, weights.reshape(-1, 1, 2)).reshape(*carriers.shape, 3)
+    sides = np.repeat(elements & 1, carriers.shape[1])
+    return points, side_normals(surfaces.normals[tree.triangle[nodes]], sides).reshape(*carriers.shape, 3)
 
 
 class Transport:
@@ -145,6 +155,10 @@ class Transport:
             spread = np.stack([corner + (normals * OFFSET).astype(np.float32), edge1, edge2], axis=1)
             origins = patterns.positions[pattern] @ spread
             directions = patterns.directions[pattern] @ frames(normals, angle)
+            clustered = np.flatnonzero(self.tree.is_cluster(part >> 1))
+            origins[clustered], directions[clustered] = self._leaving_clusters(
+                part[clustered], patterns, pattern[clustered], angle[clustered]
+            )
             hits, root, weights, distance = self.look(origins.reshape(-1, 3), directions.reshape(-1, 3))
             hits = hits.reshape(-1, count)
             return Rows(
@@ -157,6 +171,23 @@ class Transport:
             )
 
         return Rows.stacked(self.rays.map(work, len(elements), count, report))
+
+    def _leaving_clusters(
+        self, elements: Ints, patterns: Patterns, pattern: Ints, angle: Floats
+    ) -> tuple[Singles, Singles]:
+        """Origins and directions of the rays of clusters, each about the normal of its own triangle, (m, r, 3)."""
+        carriers = self._carriers(elements, patterns)
+        points, normals = points_on(
+            self.surfaces, self.tree, elements, carriers, patterns.positions[pattern][..., 1:].astype(np.float64)
+        )
+        turned = frames(normals.reshape(-1, 3), np.repeat(angle, carriers.shape[1]))
+        directions = (patterns.directions[pattern].reshape(-1, 1, 3) @ turned).reshape(points.shape)
+        return self.rays.local(points) + (normals * OFFSET).astype(np.float32), directions
+
+    def _carriers(self, elements: Ints, patterns: Patterns) -> Ints:
+        """Triangles that the rays of elements leave, (m, r) nodes."""
+        shares = shifted(patterns.shares[:, None], hashed(elements, 1, self.seed + 71))[..., 0]
+        return self.tree.carriers(elements >> 1, shares)[0]
 
     def _local_triangles(self, nodes: Ints) -> tuple[Singles, Singles, Singles]:
         """First corner of each node and the two edges from it, in the ray library's coordinates."""
@@ -197,7 +228,7 @@ class Transport:
         """
         moved = 0
         self.locator = Locator(self.tree)
-        split = np.append(np.repeat(self.tree.first_child >= 0, 2), [False, False])
+        split = np.append(np.repeat(~self.tree.is_patch(), 2), [False, False])
         for k, table in enumerate(self.tables):
             table = table.taken(~split[table.element])
             flat = table.hits.reshape(-1)
@@ -243,6 +274,7 @@ class Transport:
     def open_points(self, elements: Ints, count: int) -> tuple[Floats, Floats]:
         """Points of elements from which a ray left that did not start inside a solid, and normals, (m, count, 3)."""
         weights = np.zeros((len(elements), count, 2))
+        carriers = np.repeat(elements[:, None] >> 1, count, axis=1)
         place = np.full(2 * len(self.tree), -1, dtype=np.int64)
         positions = np.concatenate([patterns.positions for patterns in self._patterns], axis=1)
         pattern, _ = self._patterns[0].choose(elements, self.seed)
@@ -255,9 +287,9 @@ class Transport:
             turn = np.arange(count) % np.maximum(table.valid[row], 1)[:, None]
             ray = np.take_along_axis(first_valid, turn, axis=1)
             weights[here] = positions[pattern[here][:, None], ray, 1:]
-        normals = element_normals(self.surfaces, self.tree, elements)
-        points = points_in(self.tree, elements >> 1, weights)
-        return points, np.broadcast_to(normals[:, None], points.shape)
+            left = np.concatenate([self._carriers(elements[here], patterns) for patterns in self._patterns], axis=1)
+            carriers[here] = np.take_along_axis(left, ray, axis=1)
+        return points_on(self.surfaces, self.tree, elements, carriers, weights)
 
     def separate_cover(self, report: Callable[[float], None] = lambda share: None) -> Cover:
         """Find the elements that are covered in part, and send short rays to their twins; ends refinement."""

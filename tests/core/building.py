@@ -5,10 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from radiosity_bake.core.patches import PatchTree, coarse_patches
+from radiosity_bake.core.patches import PatchTree, clustered_patches, coarse_patches
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.result import BakedMesh
 from radiosity_bake.core.scene import Scene, SurfaceMesh, surface_mesh
@@ -79,6 +80,30 @@ def grid(name: str, cells: int, **options: object) -> SurfaceMesh:
     return surface_mesh(name, vertices, triangles, **options)
 
 
+def dense(scene: Scene, times: int) -> Scene:
+    """Return the scene with each triangle cut into four, so many times over; nothing that is seen changes."""
+    meshes = []
+    for mesh in scene.meshes:
+        surfaces = join(Scene((replace(mesh, baked=True),), scene.world))
+        tree = PatchTree(surfaces)
+        for _ in range(times):
+            tree.split(tree.leaves())
+        leaves = tree.leaves()
+        parent = surfaces.input_triangle[tree.triangle[leaves]]
+        meshes.append(
+            surface_mesh(
+                mesh.name,
+                tree.points,
+                tree.corners[leaves],
+                corner_normals=tree.weights[leaves] @ mesh.corner_normals[parent],
+                reflectance=mesh.reflectance[parent],
+                emission=mesh.emission[parent],
+                baked=mesh.baked,
+            )
+        )
+    return Scene(tuple(meshes), scene.world)
+
+
 def room_with_block(reflectance: float = 0.5, **options: object) -> Scene:
     """Return a room of 2 x 2 x 2 with a lamp a little below the ceiling and, turned on the floor, a block."""
     lamp = exact.rectangle("lamp", (0.7, 0.7, 1.95), (0, 0.6, 0), (0.6, 0, 0), emission=(5.0, 4.0, 3.0))
@@ -117,12 +142,15 @@ def moved(scene: Scene, scale: float = 1.0, by: ArrayLike = (0.0, 0.0, 0.0)) -> 
 # ----------------------------------------------------------------------------------------------------------- tracing
 
 
-def transport_of(scene: Scene, *, smallest: float = 1e9, rays: int = 128, seed: int = 0) -> Transport:
+def transport_of(
+    scene: Scene, *, smallest: float = 1e9, rays: int = 128, seed: int = 0, clustered: bool = False
+) -> Transport:
     """Return the coarse patches of a scene ready to be traced; the default size leaves the triangles as they are."""
     surfaces = join(scene)
+    tree = clustered_patches(surfaces, smallest) if clustered else coarse_patches(surfaces, smallest)
     ray_scene = RayScene(surfaces.points, surfaces.triangles, 2)
     lit = lit_sides(surfaces, ray_scene, seed)
-    return Transport(surfaces, coarse_patches(surfaces, smallest), ray_scene, lit, rays, seed)
+    return Transport(surfaces, tree, ray_scene, lit, rays, seed)
 
 
 def fronts(tree: PatchTree) -> Ints:

@@ -106,7 +106,7 @@ def test_different_meshes_share_nothing():
 
 
 def test_splitting_a_copy_leaves_the_tree_as_it_was(tree):
-    before = {name: value.copy() for name, value in vars(tree).items()}
+    before = {name: value.copy() for name, value in vars(tree).items() if isinstance(value, np.ndarray)}
     split_at_random(tree.copy(), 2, seed=5)
     for name, value in before.items():
         assert np.array_equal(value, getattr(tree, name)), name
