@@ -123,7 +123,8 @@ def error_against(axes: Any, scene: Document, key: str, label: str, methods: Seq
     """Draw the error of each method against a cost."""
     for method in methods:
         points = sorted((e[key], 100.0 * e["rms"]) for e in of_method(scene, method))
-        draw_line(axes, method, points)
+        # Other programs change their samples more than their points: a line through those would mean nothing.
+        draw_line(axes, method, points, joined=key == "seconds" or method in BAKES)
     axes.set_xlabel(label)
     axes.set_ylabel("relative RMS error, %")
     finish(axes)
@@ -143,12 +144,13 @@ def time_against_patches(axes: Any, scene: Document) -> None:
     finish(axes)
 
 
-def draw_line(axes: Any, method: str, points: list[tuple[float, float]]) -> None:
+def draw_line(axes: Any, method: str, points: list[tuple[float, float]], joined: bool = True) -> None:
     """Draw one method, ours on top and thicker."""
     if points:
         own = method == OURS
         options: Entry = {"markersize": 6 if own else 4, "linewidth": 2.5 if own else 1.3, "zorder": 3 if own else 2}
-        axes.plot(*zip(*points, strict=True), "o-", label=method, color=COLOURS[method], **options)
+        kind = "o-" if joined else "o"
+        axes.plot(*zip(*points, strict=True), kind, label=method, color=COLOURS[method], **options)
 
 
 def finish(axes: Any) -> None:

@@ -161,9 +161,10 @@ def measured_when(scene: Document) -> str:
     own = scene["run"]
     others = sorted({entry["run"] for entry in scene["results"]} - {own})
     day = own[:10]
-    return (
-        f"{day}, all in one run" if not others else f"{day}, peers partly {', '.join(sorted({o[:10] for o in others}))}"
-    )
+    if not others:
+        return f"{day}, all in one run"
+    days = sorted({other[:10] for other in others})
+    return f"{day}, other programs in another run ({', '.join(days)})"
 
 
 def goals(document: Document) -> Lines:

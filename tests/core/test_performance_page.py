@@ -96,7 +96,7 @@ def test_the_page_says_when_the_machine_was_busy_and_when_peers_are_of_another_r
     disturbed = {**entry("Radiosity Bake", "GOOD", 1.0, 0.02), "others": 0.5}
     text = page(measured(tmp_path, disturbed, entry("Cycles bake to vertices", "16", 9.0, 0.1, run="2025-12-24")))
     assert "up to 50% of its processors" in text
-    assert "peers partly 2025-12-24" in text
+    assert "other programs in another run (2025-12-24)" in text
     text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.02)))
     assert "busy" not in text.partition("## Goals")[0]
     assert "all in one run" in text
