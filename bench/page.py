@@ -480,6 +480,15 @@ def paper_table(measured: Document) -> Lines:
         ),
         "",
         *table((*header, "fewer fragments", "gain", "met", "stage"), rows),
+        "",
+        *(
+            line
+            for scene in dict.fromkeys(row["scene"] for row in measured["rows"] if row["scene"] in PAPER_GAINS)
+            for line in (f"![{title(scene)}, subdivided](images/subdivision-{scene.replace('_', '-')}.png)", "")
+        ),
+        "*The finest subdivision of each scene, adaptive and uniform, and below the three as they are baked at GOOD.*",
+        "",
+        "![The three scenes, baked](images/paper-scenes.png)",
     ]
 
 

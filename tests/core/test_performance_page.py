@@ -10,6 +10,7 @@ import pytest
 
 from bench.convergence import cost_at, improving
 from bench.page import page
+from bench.publish import DOCS
 from bench.results import collect
 
 
@@ -105,3 +106,8 @@ def test_the_page_says_when_the_machine_was_busy_and_when_peers_are_of_another_r
 def test_an_exact_bake_does_not_break_the_page(tmp_path):
     text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.0)))
     assert "0.00%" in text
+
+
+def test_the_published_page_is_what_its_numbers_give():
+    document = json.loads((DOCS / "performance.json").read_text(encoding="utf-8"))
+    assert (DOCS / "performance.md").read_text(encoding="utf-8") == page(document)
