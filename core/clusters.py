@@ -193,7 +193,8 @@ class _Pieces:
     def of(corners: Floats, normals: Floats, reflectance: Floats) -> _Pieces:
         """Each triangle a piece."""
         # Of single precision, and so from the middle of all: half of the memory, and sizes to a millionth.
-        low, high = corners.min(axis=1), corners.max(axis=1)
+        a, b, c = corners.transpose(1, 0, 2)
+        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
         middle = (low.min(axis=0) + high.max(axis=0)) / 2.0
         areas = triangle_areas(corners)
         bounds = np.concatenate([(middle - low).T, (high - middle).T, -reflectance.T, reflectance.T])

@@ -18,6 +18,7 @@ from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, find_cuts
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error, relative_error
 from .gather import Gathered, corner_values
+from .geometry import triangle_areas
 from .patches import PatchTree
 from .receivers import Receivers, receivers
 from .scene import Floats, Ints
@@ -198,7 +199,7 @@ def _nodes_to_split(surfaces: Surfaces, known: Lit, tree: PatchTree, smallest: f
     corners = faces.points[faces.corners[face]]
     luminance = known.corner_irradiance() @ LUMINANCE
     counted = known.counted(surfaces)
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) * counted
+    area = triangle_areas(corners) * counted
     if not area.any():
         return np.zeros(0, dtype=np.int64)
     missed = interpolation_error(corners, known.places.of_corner, luminance)

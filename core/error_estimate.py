@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .direct import LUMINANCE
+from .geometry import lengths, triangle_areas
 from .scene import Floats, Ints
 
 SAFETY = 2.0
@@ -56,8 +57,9 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     order = np.argsort(key, kind="stable")
     pair = np.flatnonzero(key[order][1:] == key[order][:-1])
     first, second = face[order[pair]], face[order[pair + 1]]
-    jump = np.linalg.norm(gradient[first] - gradient[second], axis=1)
-    length = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).ravel()[order[pair]]
+    jump = lengths(gradient[first] - gradient[second])
+    along = order[pair]
+    length = lengths(corners[first, (along + 1) % 3] - corners[first, along % 3])
     missed = jump * length / 8.0
     square = np.zeros(len(corners))
     for side in (first, second):
@@ -84,7 +86,7 @@ def relative_error(
     if not counted.any():
         return 0.0
     luminance = irradiance @ LUMINANCE
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = triangle_areas(corners)
     weight = area * counted / (area * counted).sum()
     missed = interpolation_error(corners, of_corner, luminance)
     square = missed**2 + (noise[of_corner] ** 2).mean(axis=1) / 2.0

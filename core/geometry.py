@@ -13,29 +13,55 @@ WELD_CELLS = 2**20
 """Vertices that fall into the same cell of a grid this fine over a mesh count as one (1e-6 of its size)."""
 
 
+def cross(a: Floats, b: Floats) -> Floats:
+    """Cross products of vectors (n, 3), (n, 3)."""
+    result = np.empty_like(a)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        result[:, i] = a[:, j] * b[:, k] - a[:, k] * b[:, j]
+    return result
+
+
+def lengths(vectors: Floats) -> Floats:
+    """Lengths of vectors along the last axis."""
+    result: Floats = np.sqrt(np.einsum("...x,...x->...", vectors, vectors))
+    return result
+
+
 def triangle_cross(points: Floats, triangles: Ints) -> Floats:
     """Cross product of the first two edges of each triangle, (t, 3): the normal times twice the area."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    return np.cross(b - a, c - a)
+    return cross(b - a, c - a)
 
 
 def triangle_areas(corners: Floats) -> Floats:
     """Areas of triangles from their corners (t, 3, 3), (t,)."""
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    result: Floats = np.linalg.norm(cross, axis=1) / 2.0
-    return result
+    return lengths(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2.0
 
 
 def normalized(vectors: Floats) -> Floats:
     """Vectors of length 1 along the last axis; the zero vector stays zero."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
+    length = lengths(vectors)
+    length[length == 0.0] = 1.0
+    result: Floats = vectors / length[..., None]
+    return result
 
 
 def edge_lengths(points: Floats, triangles: Ints) -> Floats:
     """Lengths of the edges 0-1, 1-2 and 2-0 of each triangle, (t, 3)."""
-    corners = points[triangles]
-    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    start = np.ascontiguousarray(triangles.T)
+    square = np.zeros(start.shape)
+    for coordinate in points.T:
+        at = np.ascontiguousarray(coordinate)[start]
+        for k in range(3):
+            square[k] += (at[(k + 1) % 3] - at[k]) ** 2
+    return np.sqrt(square).T
+
+
+def largest_edges(points: Floats, triangles: Ints) -> Floats:
+    """Length of the longest edge of each triangle, (t,)."""
+    a, b, c = edge_lengths(points, triangles).T
+    longest: Floats = np.maximum(np.maximum(a, b), c)
+    return longest
 
 
 def along_curve(points: Floats) -> Ints:

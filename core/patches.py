@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clusters import Clusters, cluster_triangles
-from .geometry import edge_lengths, normalized, triangle_areas, triangle_cross
+from .geometry import edge_lengths, largest_edges, normalized, triangle_areas, triangle_cross
 from .sampling import frames
 from .scene import Floats, Ints
 from .surfaces import Surfaces
@@ -111,7 +111,7 @@ class PatchTree:
 
     def sizes(self, nodes: Ints) -> Floats:
         """Longest edge of each node, (m,), scene units."""
-        return edge_lengths(self.points, self.corners[nodes]).max(axis=1, initial=0.0)
+        return largest_edges(self.points, self.corners[nodes])
 
     def areas(self, nodes: Ints) -> Floats:
         """Area of each node, (m,), scene units squared."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .geometry import edge_lengths, normalized
+from .geometry import largest_edges, lengths, normalized
 from .reachability import side_normals
 from .scene import Floats, Ints
 from .subdivision import Faces
@@ -84,9 +84,10 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     geometric = side_normals(surfaces.normals[faces.triangle[face_of_side]], side)
     lift = normalized(mean(np.repeat(geometric, 3, axis=0)))
     position = points[corners.ravel()[first]]
-    toward = np.repeat(points[corners].mean(axis=1), 3, axis=0) - points[corners].reshape(-1, 3)
+    at = points[corners]
+    toward = (((at[:, 0] + at[:, 1] + at[:, 2]) / 3.0)[:, None] - at).reshape(-1, 3)
     inward = _into_a_face(toward, mean(toward), group, count)
-    size = edge_lengths(points, corners).max(axis=1)
+    size = largest_edges(points, corners)
     return Receivers(
         position + INWARD * inward,
         normalized(mean(shading)),
@@ -118,8 +119,6 @@ def _into_a_face(toward: Floats, mean: Floats, group: Ints, count: int) -> Float
     chosen = np.flatnonzero(along == best[group])
     face = np.zeros(count, dtype=np.int64)
     face[group[chosen[::-1]]] = chosen[::-1]
-    length = np.bincount(group, weights=np.linalg.norm(toward, axis=1), minlength=count) / np.bincount(
-        group, minlength=count
-    )
-    border = np.linalg.norm(mean, axis=1) > BORDER * length
+    length = np.bincount(group, weights=lengths(toward), minlength=count) / np.bincount(group, minlength=count)
+    border = lengths(mean) > BORDER * length
     return np.where(border[:, None], toward[face], 0.0)

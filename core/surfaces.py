@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
-from .geometry import normalized, triangle_cross, triangle_shells, welded
+from .geometry import lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
 from .scene import Floats, Ints, Scene, SurfaceMesh
 
 SMALLEST_AREA = 1e-14
@@ -107,7 +107,7 @@ def join(scene: Scene) -> Surfaces:
         place_of_point=places,
         triangles=triangles,
         normals=normals,
-        areas=np.linalg.norm(cross, axis=1) / 2.0,
+        areas=lengths(cross) / 2.0,
         corner_normals=_shading_normals(corner_normals, normals),
         mesh_of_triangle=mesh_of_triangle,
         input_triangle=np.concatenate(kept),
@@ -156,7 +156,7 @@ def _sound(mesh: SurfaceMesh, extent: float, warnings: list[str]) -> Ints:
     finite = np.isfinite(corners).all(axis=(1, 2))
     area = np.zeros(len(corners))
     sound = corners[finite]
-    area[finite] = np.linalg.norm(np.cross(sound[:, 1] - sound[:, 0], sound[:, 2] - sound[:, 0]), axis=1) / 2.0
+    area[finite] = triangle_areas(sound)
     flat = finite & (area <= SMALLEST_AREA * extent * extent)
     if not finite.all():
         warnings.append(f"{mesh.name}: {int((~finite).sum())} triangles with coordinates that are not numbers left out")
