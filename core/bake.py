@@ -17,7 +17,7 @@ from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import cut_receivers, find_cuts
 from .detail import FaceSizes, Sides, light_up, light_up_in_detail
-from .direct import strongest_emitters
+from .direct import all_emitters
 from .gather import Gathered, GatherRays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
@@ -143,7 +143,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     transport.lengthen_buried(clock.report)
     cover = transport.separate_cover(clock.report)
     shares = transport.shares()
-    emitters = strongest_emitters(surfaces, lit)
+    emitters = all_emitters(surfaces, lit, rays, settings.seed)
     balance = balance_of(transport, cover, shares)
     direct = direct_on_patches(transport, cover, balance, emitters, clock.report)
     cells = Cells(

@@ -12,6 +12,7 @@ import numpy as np
 from .direct import Emitters, direct_light
 from .direct_light import DirectLight
 from .errors import UnsolvableError
+from .geometry import order_along_curve
 from .rows import ESCAPED, Cover, Shares
 from .scene import Floats, Ints
 from .solve import Exchange, Solution
@@ -178,23 +179,21 @@ def _direct_at(
     report: Callable[[float], None],
 ) -> DirectLight:
     """Direct light at points of elements, (k, p, 3), as of k p receivers."""
-    total, count = points.shape[:2]
-    on_plane = np.all(normals == normals[:, :1], axis=(1, 2))
-    parts = []
-    for rows, neighbours in ((np.flatnonzero(on_plane), count), (np.flatnonzero(~on_plane), 1)):
+    count = points.shape[1]
+    order = order_along_curve(points[:, 0])
 
-        def work(first: int, last: int, rows: Ints = rows, neighbours: int = neighbours) -> DirectLight:
-            part = rows[first:last]
-            at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
-            keys = (elements[part, None] * count + np.arange(count)).ravel()
-            light, _ = direct_light(
-                emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52, neighbours
-            )
-            return light
+    def work(first: int, last: int) -> DirectLight:
+        part = order[first:last]
+        at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
+        keys = (elements[part, None] * count + np.arange(count)).ravel()
+        light, _ = direct_light(
+            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52
+        )
+        return light
 
-        light = DirectLight.stacked(transport.rays.map(work, len(rows), count * SHADOW_RAYS_PER_POINT, report))
-        parts.append(light.renumbered((rows[:, None] * count + np.arange(count)).ravel(), total * count))
-    return DirectLight.joined(parts)
+    parts = transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)
+    number = (order[:, None] * count + np.arange(count)).ravel()
+    return DirectLight.stacked(parts).renumbered(number, len(number))
 
 
 def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Emitters, surfaces: Surfaces) -> Floats:

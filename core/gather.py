@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from .cells import BELOW, Cells, Radiance
 from .direct import LUMINANCE, Emitters, direct_light
 from .direct_light import DirectLight
+from .geometry import order_along_curve
 from .receivers import Receivers
 from .rows import COVER_GAP
 from .sampling import Singles, frames, hemisphere_lattice
@@ -234,8 +235,11 @@ def _direct(
     report: Callable[[float], None],
 ) -> DirectLight:
     def pass_over(chosen: Ints, rays: int, salt: int, low: float, high: float) -> tuple[DirectLight, Floats]:
+        # Receivers close together share what they need to know of many emitters.
+        order = order_along_curve(receivers.points[chosen])
+
         def work(first: int, last: int) -> tuple[DirectLight, Floats]:
-            part = chosen[first:last]
+            part = chosen[order[first:last]]
             return direct_light(
                 emitters,
                 transport.rays,
@@ -248,7 +252,10 @@ def _direct(
             )
 
         parts = transport.rays.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))
-        return DirectLight.stacked([p[0] for p in parts]), np.concatenate([np.zeros(0), *(p[1] for p in parts)])
+        light = DirectLight.stacked([p[0] for p in parts]).renumbered(order, len(chosen))
+        uncertainty = np.zeros(len(chosen))
+        uncertainty[order] = np.concatenate([np.zeros(0), *(p[1] for p in parts)])
+        return light, uncertainty
 
     everyone = np.arange(len(receivers.points))
     if len(emitters.triangle) == 0:

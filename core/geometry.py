@@ -147,3 +147,21 @@ def triangle_shells(triangles: Ints, vertex_count: int) -> tuple[Ints, NDArray[n
     shells = int(shell.max()) + 1 if len(shell) else 0
     open_edges = np.bincount(np.repeat(shell, 3), weights=~matched, minlength=shells)
     return shell, open_edges == 0
+
+
+CURVE_BITS = 10
+"""Bits of each coordinate along a space-filling curve: cells of a thousandth of the extent."""
+
+
+def order_along_curve(points: Floats) -> Ints:
+    """Order of points in which neighbours mostly lie close together, (n,): that of their Morton codes (Morton 1966)."""
+    if len(points) == 0:
+        return np.zeros(0, dtype=np.int64)
+    low = points.min(axis=0)
+    extent = max(float((points.max(axis=0) - low).max()), np.finfo(np.float64).tiny)
+    cell = np.minimum((points - low) / extent * 2**CURVE_BITS, 2**CURVE_BITS - 1).astype(np.int64)
+    code = np.zeros(len(points), dtype=np.int64)
+    for bit in range(CURVE_BITS):
+        for axis in range(3):
+            code |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
+    return np.argsort(code, kind="stable")

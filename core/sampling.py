@@ -25,6 +25,10 @@ PATTERNS = 64
 
 GOLDEN = 0.6180339887498949
 
+LATTICE_ERROR = 0.8
+"""Standard error of a share V of a triangle found by n points of a lattice, over sqrt(V (1 - V)) n**-0.75. Shares cut
+off by straight lines in any place, found by 8 to 1,024 points, have 0.7 to 0.9 of it (tests/core/test_direct.py)."""
+
 Singles = NDArray[np.float32]
 
 
