@@ -58,8 +58,8 @@ class Effort:
 
 EFFORTS = {
     "DRAFT": Effort(2_000, 32, 0.04, GatherRays(64, 16, 32, 64, 0.06)),
-    "GOOD": Effort(4_000, 64, 0.012, GatherRays(256, 16, 96, 512, 0.02)),
-    "HIGH": Effort(16_000, 128, 0.005, GatherRays(768, 32, 384, 1536, 0.01)),
+    "GOOD": Effort(4_000, 64, 0.012, GatherRays(256, 64, 128, 256, 0.01)),
+    "HIGH": Effort(16_000, 128, 0.005, GatherRays(768, 128, 256, 512, 0.005)),
 }
 
 BYTES_PER_VERTEX = 4096
