@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, find_cuts
 from .direct import LUMINANCE
-from .error_estimate import interpolation_error, relative_error
-from .gather import Gathered, corner_values
+from .error_estimate import interpolation_error
+from .gather import Gathered
 from .geometry import triangle_areas
+from .lit import Lit
 from .patches import PatchTree
 from .receivers import Receivers, receivers
 from .scene import Floats, Ints
@@ -27,48 +28,6 @@ from .surfaces import Surfaces
 
 MOST_ROUNDS = 8
 """Rounds of splitting; each halves the faces at a shadow's border."""
-
-
-@dataclass(frozen=True, eq=False)
-class Lit:
-    """Faces and the light gathered at them.
-
-    Attributes
-    ----------
-    faces : Faces
-    face, side : (f,) int
-        Faces and sides (1: the back) with values: all fronts in order, then some backs.
-    enclosed : (f,) bool
-        Those inside a closed mesh that see nothing but the same inside: what glows there is not looked at closely.
-    places : Receivers
-        `of_corner` has a row for each face side.
-    gathered : Gathered
-        At the receivers.
-    """
-
-    faces: Faces
-    face: Ints
-    side: Ints
-    enclosed: NDArray[np.bool_]
-    places: Receivers
-    gathered: Gathered
-
-    def corner_irradiance(self) -> Floats:
-        """Irradiance over pi at the corners of the face sides, (f, 3, 3)."""
-        return corner_values(self.gathered, self.places.of_corner)
-
-    def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
-        """Face sides whose error counts: neither emitters nor enclosed, nor hidden altogether, (f,)."""
-        dark = np.all(surfaces.emission[self.faces.triangle[self.face]] == 0.0, axis=1)
-        shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
-        return dark & shown & ~self.enclosed
-
-    def error(self, surfaces: Surfaces) -> float:
-        """Estimated RMS error over the surface, relative to its mean."""
-        corners = self.faces.points[self.faces.corners[self.face]]
-        return relative_error(
-            corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.counted(surfaces)
-        )
 
 
 @dataclass(frozen=True)
@@ -142,34 +101,92 @@ def light_up_in_detail(
     -------
     The faces and their light, and the tree whose leaves they lie in.
     """
-    tree = tree.copy()
-    known = light_up(surfaces, sides, conforming_faces(surfaces, tree), gather_at)
+    shown = _ShownFaces(surfaces, sides, tree.copy(), gather_at)
 
-    def split_by_error(known: Lit, first_new: int) -> Ints:
-        return _nodes_to_split(surfaces, known, tree, sizes.smallest, tolerance)
+    def split_by_error(first_new: int) -> Ints:
+        return _nodes_to_split(shown.missed_light(), shown.tree, sizes.smallest, tolerance)
 
-    def split_by_outline(known: Lit, first_new: int) -> Ints:
-        return _nodes_with_crooked_cuts(known, tree, sizes.smallest_cut, first_new, is_hidden)
+    def split_by_outline(first_new: int) -> Ints:
+        nodes = [np.zeros(0, dtype=np.int64)]
+        for lit, chosen in shown.parts():
+            faces = chosen & (lit.faces.node >= first_new)
+            if faces.any():
+                nodes.append(_nodes_with_crooked_cuts(lit, faces, shown.tree, sizes, is_hidden))
+        return np.sort(np.concatenate(nodes))
 
     for nodes_to_split in (split_by_error, split_by_outline):
         first_new = 0
         for _ in range(MOST_ROUNDS):
-            nodes = nodes_to_split(known, first_new)
-            if len(nodes) == 0 or len(known.places.points) > sizes.most_vertices:
+            nodes = nodes_to_split(first_new)
+            if len(nodes) == 0 or shown.receivers() > sizes.most_vertices:
                 break
-            first_new = len(tree)
-            tree.split(nodes)
-            known = _updated(surfaces, sides, conforming_faces(surfaces, tree), gather_at, known)
-    return known, tree
+            first_new = len(shown.tree)
+            shown.split(nodes)
+    return shown.all(), shown.tree
 
 
-def _nodes_with_crooked_cuts(known: Lit, tree: PatchTree, smallest: float, first_new: int, is_hidden: IsHidden) -> Ints:
-    """Leaves that can be split and whose faces a straight cut does not fit, among those made in the last round."""
+class _ShownFaces:
+    """Faces that are split from round to round.
+
+    Shells of which no face is split, such as most dense meshes, are looked at once; only the others are made anew.
+
+    Attributes
+    ----------
+    tree : PatchTree
+    """
+
+    def __init__(self, surfaces: Surfaces, sides: Sides, tree: PatchTree, gather_at: GatherAt) -> None:
+        self._surfaces, self._sides, self.tree, self._gather_at = surfaces, sides, tree, gather_at
+        self._changed_shells = np.zeros(len(sides.lit), dtype=bool)
+        faces = conforming_faces(surfaces, tree, ~self._changed_shells)
+        self._first = light_up(surfaces, sides, faces, gather_at)
+        self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
+        self._missed = _missed_light(surfaces, self._first, len(tree))
+        self._shell_of_node = surfaces.shell_of_triangle[tree.triangle]
+
+    def parts(self) -> list[tuple[Lit, NDArray[np.bool_]]]:
+        """All faces, as some of those of each entry."""
+        kept = ~self._changed_shells[self._shell_of_node[self._first.faces.node]]
+        return [(self._first, kept), (self._changed, np.ones(len(self._changed.faces.triangle), dtype=bool))]
+
+    def receivers(self) -> int:
+        """Places where light was gathered."""
+        return len(self._first.places.points) + len(self._changed.places.points)
+
+    def missed_light(self) -> Floats:
+        """As `_missed_light`, of all faces."""
+        missed = _missed_light(self._surfaces, self._changed, len(self.tree))
+        missed[:, : len(self._shell_of_node)] += np.where(self._changed_shells[self._shell_of_node], 0.0, self._missed)
+        return missed
+
+    def split(self, nodes: Ints) -> None:
+        """Split leaves, and gather light at the new vertices."""
+        new = np.zeros(len(self._changed_shells), dtype=bool)
+        new[self._surfaces.shell_of_triangle[self.tree.triangle[nodes]]] = True
+        new &= ~self._changed_shells
+        if new.any():
+            more = self._first.part(new[self._shell_of_node[self._first.faces.node]])
+            every = np.ones(len(self._changed.faces.triangle), dtype=bool)
+            self._changed = self._changed.with_others(every, more, self.tree)
+            self._changed_shells |= new
+        self.tree.split(nodes)
+        faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
+        self._changed = _updated(self._surfaces, self._sides, faces, self._gather_at, self._changed)
+
+    def all(self) -> Lit:
+        """The faces and their light."""
+        (first, kept), (changed, _) = self.parts()
+        return first if kept.all() else first.with_others(kept, changed, self.tree)
+
+
+def _nodes_with_crooked_cuts(
+    known: Lit, faces: NDArray[np.bool_], tree: PatchTree, sizes: FaceSizes, is_hidden: IsHidden
+) -> Ints:
+    """Leaves that can be split and that a straight cut does not fit, among those that some `faces` (f,) lie in."""
     hidden = known.gathered.hidden
-    new = known.faces.node >= first_new
-    cuts = find_cuts(known.faces, known.places, hidden, is_hidden, ROUGH_SEARCHES, new)
+    cuts = find_cuts(known.faces, known.places, hidden, is_hidden, ROUGH_SEARCHES, faces)
     nodes = np.unique(known.faces.node[crooked_faces(known.faces, known.places, hidden, cuts, is_hidden)])
-    return nodes[tree.sizes(nodes) >= 2.0 * smallest]
+    return nodes[tree.sizes(nodes) >= 2.0 * sizes.smallest_cut]
 
 
 def _wanted_sides(faces: Faces, surfaces: Surfaces, sides: Sides) -> tuple[Ints, Ints, NDArray[np.bool_]]:
@@ -193,22 +210,27 @@ def _updated(surfaces: Surfaces, sides: Sides, faces: Faces, gather_at: GatherAt
     return Lit(faces, face, side, enclosed, places, known.gathered.with_more(place, new, missing))
 
 
-def _nodes_to_split(surfaces: Surfaces, known: Lit, tree: PatchTree, smallest: float, tolerance: float) -> Ints:
-    """The fewest leaves whose error must go for the rest to meet the tolerance, worst first."""
+def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
+    """By node: squared error of interpolation times area, area, and luminance times area, (3, nodes)."""
     faces, face = known.faces, known.face
     corners = faces.points[faces.corners[face]]
     luminance = known.corner_irradiance() @ LUMINANCE
-    counted = known.counted(surfaces)
-    area = triangle_areas(corners) * counted
+    area = triangle_areas(corners) * known.counted(surfaces)
+    missed = interpolation_error(corners, known.places.of_corner, luminance)
+    summed = (missed**2 * area, area, area * luminance.mean(axis=1))
+    by_node = [np.bincount(faces.node[face], weights=value, minlength=nodes) for value in summed]
+    return np.stack(by_node).astype(np.float64)  # of no face at all, counts are whole numbers
+
+
+def _nodes_to_split(missed_light: Floats, tree: PatchTree, smallest: float, tolerance: float) -> Ints:
+    """The fewest leaves whose error must go for the rest to meet the tolerance, worst first."""
+    square, area, light = missed_light
     if not area.any():
         return np.zeros(0, dtype=np.int64)
-    missed = interpolation_error(corners, known.places.of_corner, luminance)
-    square = np.bincount(faces.node[face], weights=missed**2 * area, minlength=len(tree))
-    mean = float((area * luminance.mean(axis=1)).sum() / area.sum())
     splittable = np.flatnonzero(square)
     splittable = splittable[tree.sizes(splittable) >= 2.0 * smallest]
     worst_first = splittable[np.argsort(-square[splittable], kind="stable")]
-    allowed = (tolerance * mean) ** 2 * area.sum()
+    allowed = (tolerance * light.sum() / area.sum()) ** 2 * area.sum()
     # What is left of the error that splitting could mend before the first k are gone.
     left = square[worst_first].sum() - np.cumsum(square[worst_first]) + square[worst_first]
     return np.sort(worst_first[left > allowed])

@@ -52,7 +52,7 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     """
     gradient = gradients(corners, values)
     start, end = of_corner.ravel(), np.roll(of_corner, -1, axis=1).ravel()
-    key = np.minimum(start, end) * np.int64(of_corner.max() + 1) + np.maximum(start, end)
+    key = np.minimum(start, end) * np.int64(of_corner.max(initial=0) + 1) + np.maximum(start, end)
     face = np.repeat(np.arange(len(corners)), 3)
     order = np.argsort(key, kind="stable")
     pair = np.flatnonzero(key[order][1:] == key[order][:-1])

@@ -15,7 +15,7 @@ from .cells import BELOW, Cells, Radiance
 from .direct import LUMINANCE, Emitters, direct_light
 from .direct_light import DirectLight
 from .geometry import order_along_curve
-from .receivers import Receivers
+from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP
 from .sampling import Singles, frames, hemisphere_lattice
 from .scene import Floats, Ints
@@ -91,6 +91,25 @@ class Gathered:
         nothing, unseen = np.zeros((0, 3)), np.zeros(0, dtype=bool)
         return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, np.zeros((0, rays), np.int32))
 
+    def taken(self, which: Ints) -> Gathered:
+        """At some of the receivers, each at most once."""
+        return self.joined(Gathered.none(self.places.shape[1]), which)
+
+    def joined(self, others: Gathered, which: Ints) -> Gathered:
+        """At some of these receivers and of others, which are counted on from these; each at most once."""
+        kept, own = min(self.places.shape[1], others.places.shape[1]), len(self.noise)
+        number = np.full(own + len(others.noise), -1, dtype=np.int64)
+        number[which] = np.arange(len(which))
+        direct = [self.direct.renumbered(number[:own], len(which)), others.direct.renumbered(number[own:], len(which))]
+        return Gathered(
+            taken_of_two(self.irradiance, others.irradiance, which),
+            DirectLight.joined(direct),
+            taken_of_two(self.direct_irradiance, others.direct_irradiance, which),
+            taken_of_two(self.noise, others.noise, which),
+            taken_of_two(self.hidden, others.hidden, which),
+            taken_of_two(self.places[:, :kept], others.places[:, :kept], which),
+        )
+
     def with_more(self, taken: Ints, more: Gathered, rows: Ints) -> Gathered:
         """Those of `taken`, of which `rows` are replaced by `more`."""
         kept = min(self.places.shape[1], more.places.shape[1])
@@ -134,9 +153,9 @@ def gather(
     if total == 0:
         return Gathered.none(counts.hemisphere)
     pattern = hemisphere_lattice(counts.hemisphere, transport.seed + 101)
-    keep = total * counts.hemisphere <= most_kept
+    kept = np.empty((total, counts.hemisphere if total * counts.hemisphere <= most_kept else 0), dtype=np.int32)
 
-    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.int32]]:
+    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         part = slice(first, last)
         found, below = _looked(transport, receivers, part, pattern)
         places = cells.places(found)
@@ -145,13 +164,15 @@ def gather(
         means, noise, valid = _mean_seen(radiance, places)
         distance = found.distance.reshape(places.shape)
         hidden = _covered(transport, np.minimum(receivers.sizes[part], finest), distance) | (valid < LEAST_VALID_SHARE)
-        return means, noise, hidden, places if keep else np.zeros((last - first, 0), dtype=np.int32)
+        kept[part] = places[:, : kept.shape[1]]
+        return means, noise, hidden
 
     parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
-    means, noise, hidden, places = (np.concatenate([p[k] for p in parts]) for k in range(4))
+    means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
+    hidden = np.concatenate([p[2] for p in parts])
     direct = _direct(transport, emitters, receivers, counts, report)
     irradiance = direct.irradiance(emitters.radiance)
-    return Gathered(means + irradiance, direct, irradiance, noise, hidden, places)
+    return Gathered(means + irradiance, direct, irradiance, noise, hidden, kept)
 
 
 def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gathered:

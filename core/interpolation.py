@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cells import Cells
-from .detail import Lit
 from .direct import LUMINANCE
+from .lit import Lit
 from .patches import PatchTree
 from .scene import Floats
 from .surfaces import Surfaces

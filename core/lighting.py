@@ -14,12 +14,12 @@ from .balance import Balance, check_solved, energy, left_emission, seen_radiance
 from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import CutEdges, cut_faces
-from .detail import Lit
 from .direct import Emitters
 from .direct_light import DirectLight
 from .errors import NoLightError
 from .gather import Gathered, look_again
 from .interpolation import InterpolatedRadiance, PlacesOnFaces
+from .lit import Lit
 from .output import baked_meshes
 from .result import BakeResult
 from .scene import Floats, Ints, Scene

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,25 @@ class Receivers:
         """Some of the receivers, without faces."""
         values = {field.name: getattr(self, field.name)[which] for field in fields(self) if field.name != "of_corner"}
         return Receivers(**values, of_corner=np.zeros((0, 3), dtype=np.int64))
+
+    def joined(self, others: Receivers, which: Ints) -> Receivers:
+        """Some of these receivers and of others, which are counted on from these; without faces."""
+        values = {
+            field.name: taken_of_two(getattr(self, field.name), getattr(others, field.name), which)
+            for field in fields(self)
+            if field.name != "of_corner"
+        }
+        return Receivers(**values, of_corner=np.zeros((0, 3), dtype=np.int64))
+
+
+def taken_of_two(one: Any, other: Any, which: Ints) -> Any:
+    """Rows of two arrays, those of the other counted on from those of the one."""
+    if len(one) == 0:
+        return other[which]
+    rows = np.take(one, np.minimum(which, len(one) - 1), axis=0)
+    behind = np.flatnonzero(which >= len(one))
+    rows[behind] = other[which[behind] - len(one)]
+    return rows
 
 
 def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) -> Receivers:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from .cells import Radiance
 from .clock import Clock
-from .detail import Lit
 from .errors import BakeError
 from .interpolation import PlacesOnFaces
 from .lighting import (
@@ -28,6 +27,7 @@ from .lighting import (
     relit,
     result_of,
 )
+from .lit import Lit
 from .progress import ProgressCallback, no_progress
 from .result import BakeResult
 from .scene import Scene, SurfaceMesh

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,23 @@ class Faces:
     weights: Floats
     node: Ints
 
+    def taken(self, which: Ints) -> Faces:
+        """Some of the faces."""
+        corners, triangle = self.corners[which], self.triangle[which]
+        return replace(self, corners=corners, triangle=triangle, weights=self.weights[which], node=self.node[which])
+
+    def joined(self, others: Faces, tree: PatchTree) -> Faces:
+        """These faces and others behind them, of the same tree."""
+        return Faces(
+            tree.points,
+            tree.place_of_point,
+            tree.mesh_of_point,
+            np.concatenate([self.corners, others.corners]),
+            np.concatenate([self.triangle, others.triangle]),
+            np.concatenate([self.weights, others.weights]),
+            np.concatenate([self.node, others.node]),
+        )
+
     def corner_normals(self, surfaces: Surfaces) -> Floats:
         """Shading normals at the corners, interpolated and of length 1, (s, 3, 3)."""
         return normalized(self.weights @ surfaces.corner_normals[self.triangle])
@@ -65,16 +82,22 @@ def input_faces(surfaces: Surfaces) -> Faces:
     )
 
 
-def conforming_faces(surfaces: Surfaces, tree: PatchTree) -> Faces:
+def conforming_faces(surfaces: Surfaces, tree: PatchTree, shells: NDArray[np.bool_]) -> Faces:
     """Faces of the baked meshes in which every vertex on an edge is a corner of the faces on both sides.
 
     Leaves next to leaves two levels finer are split first; what is left has at most one vertex on an edge, and is cut
     into two, three or four triangles from there (red-green closure; Bank, Sherman & Weiser 1983). The tree is split
     in place.
+
+    Parameters
+    ----------
+    shells : (shells,) bool
+        Those whose faces are wanted: no vertex of another lies on their edges.
     """
+    wanted = surfaces.baked & shells[surfaces.shell_of_triangle]
     while True:
         leaves = tree.leaves()
-        leaves = leaves[surfaces.baked[tree.triangle[leaves]]]
+        leaves = leaves[wanted[tree.triangle[leaves]]]
         middles = _edge_middles(tree, tree.corners[leaves])
         uneven = _twice_halved(tree, tree.corners[leaves], middles)
         if not uneven.any():

@@ -36,11 +36,16 @@ MESHES = {
 }
 
 
+def conforming(surfaces, tree: PatchTree):
+    """Return the conforming faces of all shells."""
+    return conforming_faces(surfaces, tree, np.ones(len(surfaces.closed), dtype=bool))
+
+
 @pytest.fixture(scope="module", params=MESHES)
 def uneven(request):
     surfaces = join(Scene((MESHES[request.param](),), DARK))
     tree = uneven_tree(surfaces)
-    return surfaces, tree, conforming_faces(surfaces, tree.copy())
+    return surfaces, tree, conforming(surfaces, tree.copy())
 
 
 def test_the_brute_force_check_finds_a_t_junction():
@@ -82,7 +87,7 @@ def test_weights_give_the_position_of_every_corner(uneven):
 
 def test_closed_meshes_stay_closed():
     surfaces = join(Scene((MESHES["room"](),), DARK))
-    faces = conforming_faces(surfaces, uneven_tree(surfaces))
+    faces = conforming(surfaces, uneven_tree(surfaces))
     start, end = faces.corners.ravel(), np.roll(faces.corners, -1, axis=1).ravel()
     forward = set(zip(start.tolist(), end.tolist(), strict=True))
     assert len(forward) == len(start)
@@ -92,7 +97,7 @@ def test_closed_meshes_stay_closed():
 def test_every_face_lies_in_the_leaf_that_it_names():
     surfaces = join(Scene((MESHES["sphere"](),), DARK))
     tree = uneven_tree(surfaces)
-    faces = conforming_faces(surfaces, tree)
+    faces = conforming(surfaces, tree)
     leaves = tree.leaves()
     assert set(faces.node.tolist()) == set(leaves.tolist())
     total = np.bincount(faces.node, weights=areas(faces.points[faces.corners]), minlength=len(tree))
@@ -103,7 +108,7 @@ def test_even_leaves_are_the_faces():
     surfaces = join(Scene((MESHES["grid"](),), DARK))
     tree = PatchTree(surfaces)
     tree.split(tree.leaves())
-    faces = conforming_faces(surfaces, tree)
+    faces = conforming(surfaces, tree)
     assert np.array_equal(np.sort(faces.corners, axis=1), np.sort(tree.corners[tree.leaves()], axis=1))
 
 
@@ -117,7 +122,7 @@ def test_meshes_that_are_not_baked_have_no_faces():
         baked=False,
     )
     surfaces = join(Scene((quiet, *meshes[1:]), DARK))
-    for faces in (conforming_faces(surfaces, PatchTree(surfaces)), input_faces(surfaces)):
+    for faces in (conforming(surfaces, PatchTree(surfaces)), input_faces(surfaces)):
         assert 0 not in surfaces.mesh_of_triangle[faces.triangle]
         assert set(surfaces.mesh_of_triangle[faces.triangle]) == {1, 2, 3, 4, 5}
 
@@ -126,7 +131,7 @@ def test_normals_between_corners_are_interpolated_and_of_length_one():
     surfaces = join(Scene((MESHES["sphere"](),), DARK))
     vertices = surfaces.points / np.linalg.norm(surfaces.points, axis=1)[:, None]
     smooth = type(surfaces)(**{**vars(surfaces), "corner_normals": -vertices[surfaces.triangles]})
-    faces = conforming_faces(smooth, uneven_tree(smooth))
+    faces = conforming(smooth, uneven_tree(smooth))
     normals = faces.corner_normals(smooth)
     np.testing.assert_allclose(np.linalg.norm(normals, axis=2), 1.0, atol=1e-12)
     middle = faces.points[faces.corners]

@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces with the light that was gathered at them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .error_estimate import relative_error
+from .gather import Gathered, corner_values
+from .patches import PatchTree
+from .receivers import Receivers
+from .scene import Floats, Ints
+from .subdivision import Faces
+from .surfaces import Surfaces
+
+
+@dataclass(frozen=True, eq=False)
+class Lit:
+    """Faces and the light gathered at them.
+
+    Attributes
+    ----------
+    faces : Faces
+    face, side : (f,) int
+        Faces and sides (1: the back) with values: all fronts in order, then some backs.
+    enclosed : (f,) bool
+        Those inside a closed mesh that see nothing but the same inside: what glows there is not looked at closely.
+    places : Receivers
+        `of_corner` has a row for each face side.
+    gathered : Gathered
+        At the receivers.
+    """
+
+    faces: Faces
+    face: Ints
+    side: Ints
+    enclosed: NDArray[np.bool_]
+    places: Receivers
+    gathered: Gathered
+
+    def corner_irradiance(self) -> Floats:
+        """Irradiance over pi at the corners of the face sides, (f, 3, 3)."""
+        return corner_values(self.gathered, self.places.of_corner)
+
+    def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
+        """Face sides whose error counts: neither emitters nor enclosed, nor hidden altogether, (f,)."""
+        dark = np.all(surfaces.emission[self.faces.triangle[self.face]] == 0.0, axis=1)
+        shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
+        return dark & shown & ~self.enclosed
+
+    def error(self, surfaces: Surfaces) -> float:
+        """Estimated RMS error over the surface, relative to its mean."""
+        corners = self.faces.points[self.faces.corners[self.face]]
+        return relative_error(
+            corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.counted(surfaces)
+        )
+
+    def part(self, kept: NDArray[np.bool_]) -> Lit:
+        """Some of the faces, (faces,) bool, which share no receiver with the others."""
+        rows = np.flatnonzero(kept[self.face])
+        receivers, of_corner = np.unique(self.places.of_corner[rows], return_inverse=True)
+        return Lit(
+            self.faces.taken(np.flatnonzero(kept)),
+            (np.cumsum(kept) - 1)[self.face[rows]],
+            self.side[rows],
+            self.enclosed[rows],
+            replace(self.places.taken(receivers), of_corner=of_corner.reshape(-1, 3)),
+            self.gathered.taken(receivers),
+        )
+
+    def with_others(self, kept: NDArray[np.bool_], others: Lit, tree: PatchTree) -> Lit:
+        """Some of the faces, (faces,) bool, and all of `others`, in the order of the leaves of `tree` they lie in.
+
+        None of the two shares a receiver with the other.
+        """
+        own, rows = np.flatnonzero(kept), np.flatnonzero(kept[self.face])
+        order = np.argsort(np.concatenate([self.faces.node[own], others.faces.node]), kind="stable")
+        number = np.empty_like(order)
+        number[order] = np.arange(len(order))
+        face = number[np.concatenate([(np.cumsum(kept) - 1)[self.face[rows]], len(own) + others.face])]
+        side = np.concatenate([self.side[rows], others.side])
+        of_corner = np.concatenate([self.places.of_corner[rows], len(self.places.codes) + others.places.of_corner])
+        codes = np.concatenate([self.places.codes, others.places.codes])
+        receivers = np.unique(of_corner)
+        receivers = receivers[np.argsort(codes[receivers], kind="stable")]
+        place = np.empty(len(codes), dtype=np.int64)
+        place[receivers] = np.arange(len(receivers))
+        sorted_sides = np.lexsort([face, side])
+        return Lit(
+            self.faces.taken(own).joined(others.faces, tree).taken(order),
+            face[sorted_sides],
+            side[sorted_sides],
+            np.concatenate([self.enclosed[rows], others.enclosed])[sorted_sides],
+            replace(self.places.joined(others.places, receivers), of_corner=place[of_corner[sorted_sides]]),
+            self.gathered.joined(others.gathered, receivers),
+        )
