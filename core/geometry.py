@@ -64,26 +64,6 @@ def largest_edges(points: Floats, triangles: Ints) -> Floats:
     return longest
 
 
-def along_curve(points: Floats) -> Ints:
-    """Numbers by which points (n, 3) lie along Morton's space-filling curve, 2^21 steps on each axis, (n,)."""
-    low = points.min(axis=0)
-    extent = float((points.max(axis=0) - low).max())
-    code = np.zeros(len(points), dtype=np.int64)
-    for axis in range(3):
-        bits = ((points[:, axis] - low[axis]) * ((2**21 - 1) / extent if extent > 0.0 else 0.0)).astype(np.int64)
-        # Each step doubles the gaps between groups of bits, until two zeros follow each bit.
-        for shift, mask in (
-            (32, 0x1F00000000FFFF),
-            (16, 0x1F0000FF0000FF),
-            (8, 0x100F00F00F00F00F),
-            (4, 0x10C30C30C30C30C3),
-            (2, 0x1249249249249249),
-        ):
-            bits = (bits | bits << shift) & mask
-        code |= bits << axis
-    return code
-
-
 def welded(points: Floats) -> Ints:
     """For each vertex the lowest index of a vertex at the same place, (v,).
 
@@ -149,19 +129,28 @@ def triangle_shells(triangles: Ints, vertex_count: int) -> tuple[Ints, NDArray[n
     return shell, open_edges == 0
 
 
-CURVE_BITS = 10
-"""Bits of each coordinate along a space-filling curve: cells of a thousandth of the extent."""
-
-
-def order_along_curve(points: Floats) -> Ints:
-    """Order of points in which neighbours mostly lie close together, (n,): that of their Morton codes (Morton 1966)."""
+def along_curve(points: Floats) -> Ints:
+    """Numbers by which points (n, 3) lie along a curve that fills their bounding box (Morton 1966), (n,)."""
     if len(points) == 0:
         return np.zeros(0, dtype=np.int64)
     low = points.min(axis=0)
     extent = max(float((points.max(axis=0) - low).max()), np.finfo(np.float64).tiny)
-    cell = np.minimum((points - low) / extent * 2**CURVE_BITS, 2**CURVE_BITS - 1).astype(np.int64)
     code = np.zeros(len(points), dtype=np.int64)
-    for bit in range(CURVE_BITS):
-        for axis in range(3):
-            code |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return np.argsort(code, kind="stable")
+    for axis in range(3):
+        bits = np.minimum((points[:, axis] - low[axis]) / extent * 2**21, 2**21 - 1).astype(np.int64)
+        # Each step doubles the gaps between groups of bits, until two zeros follow each bit.
+        for shift, mask in (
+            (32, 0x1F00000000FFFF),
+            (16, 0x1F0000FF0000FF),
+            (8, 0x100F00F00F00F00F),
+            (4, 0x10C30C30C30C30C3),
+            (2, 0x1249249249249249),
+        ):
+            bits = (bits | bits << shift) & mask
+        code |= bits << axis
+    return code
+
+
+def order_along_curve(points: Floats) -> Ints:
+    """Order of points in which neighbours mostly lie close together, (n,)."""
+    return np.argsort(along_curve(points), kind="stable")
