@@ -155,8 +155,6 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         COVER_GAP * rays.scale * finest,
     )
     sides = Sides(lit, transport.enclosed_shells())
-    aside = np.isin(cells.element, balance.elements[balance.buried > 0.0]) | (cover.twin_of(cells.element) >= 0)
-    aside |= transport.is_enclosed(cells.element, sides.enclosed)
     patches = TracedPatches(len(tree), balance, emitters, direct, cells)
     light = light_of_patches(patches, surfaces)
     traced = rays.rays
@@ -179,6 +177,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         sizes = FaceSizes(finest, finest_cut, most_vertices)
         shown, leaves = light_up_in_detail(surfaces, sides, tree, sizes, effort.tolerance, gather_at, is_hidden)
         if shown.gathered.places.shape[1]:
+            aside = transport.is_aside(sides.enclosed)[cover.base_of(cells.element)]
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)

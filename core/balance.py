@@ -191,7 +191,7 @@ def _direct_at(
         )
         return light
 
-    parts = transport.rays.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)
+    parts = transport.rays.workers.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)
     number = (order[:, None] * count + np.arange(count)).ravel()
     return DirectLight.stacked(parts).renumbered(number, len(number))
 

@@ -44,5 +44,5 @@ def enclosed_sides(surfaces: Surfaces, emitting: Ints, rays: RayScene, seed: int
         share: NDArray[np.bool_] = emits[hits.triangle].reshape(-1, count).mean(axis=1) > ENCLOSED
         return share
 
-    parts = rays.map(work, 2 * len(emitting), count)
+    parts = rays.workers.map(work, 2 * len(emitting), count)
     return np.concatenate([np.zeros(0, dtype=bool), *parts]).reshape(-1, 2)

@@ -167,7 +167,7 @@ def gather(
         kept[part] = places[:, : kept.shape[1]]
         return means, noise, hidden
 
-    parts = transport.rays.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
+    parts = transport.rays.workers.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
     hidden = np.concatenate([p[2] for p in parts])
     direct = _direct(transport, emitters, receivers, counts, report)
@@ -202,7 +202,7 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
         result: NDArray[np.bool_] = covered | (buried.reshape(-1, rays).mean(axis=1) > 1.0 - LEAST_VALID_SHARE)
         return result
 
-    parts = transport.rays.map(work, len(receivers.points), rays)
+    parts = transport.rays.workers.map(work, len(receivers.points), rays)
     return np.concatenate([np.zeros(0, dtype=bool), *parts])
 
 
@@ -272,7 +272,7 @@ def _direct(
                 transport.seed + salt,
             )
 
-        parts = transport.rays.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))
+        parts = transport.rays.workers.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))
         light = DirectLight.stacked([p[0] for p in parts]).renumbered(order, len(chosen))
         uncertainty = np.zeros(len(chosen))
         uncertainty[order] = np.concatenate([np.zeros(0), *(p[1] for p in parts)])

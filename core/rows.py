@@ -140,10 +140,9 @@ class Cover:
     twin: NDArray[np.int32]
     reach: Singles
 
-    def twin_of(self, element: Ints) -> NDArray[np.int32]:
-        """The twin of each element, or of the one that it is a twin of itself, -1 where there is none, (n,)."""
-        own = np.concatenate([self.twin, self.twin[self.element]])
-        return own[element]
+    def base_of(self, element: Ints) -> Ints:
+        """The element itself, or the one that it is a twin of, (n,)."""
+        return np.concatenate([np.arange(self.first_twin), self.element])[element]
 
     def tell_apart(self, element: NDArray[np.int32], distance: Singles) -> None:
         """Replace elements met by short rays by their twins, in place; shapes alike."""

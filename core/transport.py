@@ -114,12 +114,6 @@ class Transport:
             known[table.element] = True
         return known
 
-    def has_long_row(self) -> NDArray[np.bool_]:
-        """Whether each element has a long row, (2 * nodes,)."""
-        known = np.zeros(2 * len(self.tree), dtype=bool)
-        known[self.tables[1].element] = True
-        return known
-
     def met_but_untraced(self) -> Ints:
         """Elements that some ray met and that have no row of their own yet, sorted."""
         met = np.zeros(2 * len(self.tree) + 2, dtype=bool)
@@ -170,7 +164,7 @@ class Transport:
                 count - (hits == BURIED).sum(axis=1),
             )
 
-        return Rows.stacked(self.rays.map(work, len(elements), count, report))
+        return Rows.stacked(self.rays.workers.map(work, len(elements), count, report))
 
     def _leaving_clusters(
         self, elements: Ints, patterns: Patterns, pattern: Ints, angle: Floats
@@ -328,7 +322,7 @@ class Transport:
             short = found.distance.reshape(-1, COVER_POINTS, COVER_RAYS) < reach[elements[first:last]][:, None, None]
             return short.sum(axis=2) >= COVERED_RAYS
 
-        parts = self.rays.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
+        parts = self.rays.workers.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
         return np.concatenate([np.zeros((0, COVER_POINTS), dtype=bool), *parts])
 
     def enclosed_shells(self) -> NDArray[np.bool_]:
@@ -353,15 +347,16 @@ class Transport:
         looks_out = outward > LEAKING * all_rays
         return surfaces.closed & ~looks_out[1:nothing:2] & seen[:nothing:2]
 
-    def is_enclosed(self, elements: Ints, shells: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Whether elements or twins are the insides of such shells (shells,), (n,)."""
-        base = np.arange(2 * len(self.tree))
+    def is_aside(self, enclosed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Elements whose light tells nothing of what is around them, (2 * nodes,).
+
+        They are partly inside a solid, are covered in part, or are the insides of the `enclosed` shells (shells,).
+        """
+        aside = self.buried_share() > 0.0
         if self.cover is not None:
-            base = np.concatenate([base, self.cover.element])
-        element = base[elements]
-        shell = self.surfaces.shell_of_triangle[self.tree.triangle[element >> 1]]
-        result: NDArray[np.bool_] = shells[shell] & (element % 2 == 1)
-        return result
+            aside |= self.cover.twin >= 0
+        aside[1::2] |= enclosed[self.surfaces.shell_of_triangle[self.tree.triangle]]
+        return aside
 
     def shares(self) -> Shares:
         """Form factors of all pairs from the rows as they are; those of twins from their short rays."""

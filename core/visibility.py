@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from .errors import RayLibraryError
 from .scene import Floats, Ints
-from .workers import Result, Workers
+from .workers import Workers
 
 OFFSET = 2e-6
 """Distance by which rays start off their surface, in units of the scene's largest extent. Coordinates are centred and
@@ -161,13 +160,3 @@ class RayScene:
         ends = np.ones(len(starts), dtype=np.float32)
         answer: NDArray[np.int32] = self._run(starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED")
         return answer.reshape(toward.shape[:2]) < 0
-
-    def map(
-        self,
-        work: Callable[[int, int], Result],
-        count: int,
-        rays_each: int,
-        report: Callable[[float], None] = lambda share: None,
-    ) -> list[Result]:
-        """Call `work(first, last)` over `count` items in batches, on all threads; see `Workers.map`."""
-        return self.workers.map(work, count, rays_each, report)
