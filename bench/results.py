@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from .methods import BENCH_SCENES
+from .methods import BENCH_SCENES, OURS
 
 Document = dict[str, Any]
 Entry = dict[str, Any]
@@ -52,9 +52,24 @@ def of_method(scene: Document, method: str) -> list[Entry]:
     return [entry for entry in scene["results"] if entry["method"] == method]
 
 
+def own_bake(scene: Document, quality: str) -> Entry | None:
+    """Return the measurement of our bake of a scene at one quality, or None."""
+    return next((entry for entry in of_method(scene, OURS) if entry["setting"] == quality), None)
+
+
 def pairs(entries: Iterable[Entry], cost: str) -> list[tuple[float, float]]:
     """Return (cost, error) of each measurement."""
     return [(entry[cost], entry["rms"]) for entry in entries]
+
+
+def own_cost(entry: Entry, clock: str) -> float:
+    """Return what the whole operator took, or the core where that was not measured."""
+    return float(entry.get(f"operator_{clock}", entry[clock]))
+
+
+def ray_share(entry: Entry, cores: int) -> float:
+    """Return the share of a bake's time, of all cores, inside the ray library."""
+    return float(entry["seconds_in_ray_library"] / (entry["seconds"] * cores))
 
 
 def title(scene: str) -> str:
