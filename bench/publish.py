@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write the page and the charts from what was measured."""
+"""Write the page and the charts from what was measured.
+
+`python -m bench.publish` writes the published page anew from its own numbers, after a change of its words.
+"""
 
 from __future__ import annotations
 
@@ -31,3 +34,8 @@ def write_page(document: results.Document, folder: Path) -> list[Path]:
     data.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
     text.write_text(page.page(document), encoding="utf-8")
     return [data, text]
+
+
+if __name__ == "__main__":
+    for path in write_page(results.read(DOCS / "performance.json"), DOCS):
+        print(path)

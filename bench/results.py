@@ -14,6 +14,9 @@ from .methods import BENCH_SCENES, OURS
 Document = dict[str, Any]
 Entry = dict[str, Any]
 
+CLOCKS = ("seconds", "processor_seconds")
+"""Wall clock, and the time of all processors."""
+
 KEPT = ("method", "setting", "seconds", "processor_seconds", "operator_seconds", "operator_processor_seconds", "others")
 KEPT += ("points", "patches", "rays", "run")
 

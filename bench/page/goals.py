@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from ..methods import (
     ESTIMATE_OVER_TRUTH,
@@ -16,8 +16,8 @@ from ..methods import (
     RAY_SHARE,
 )
 from ..results import Document, of_method, own_bake, ray_share, title
-from .equal_error import COMPARED_QUALITIES, faster, fewer_vertices
-from .markdown import Lines, percent, table, times
+from .equal_error import COMPARED_QUALITIES, fewer_vertices, surely_faster
+from .markdown import Lines, paragraph, percent, table, times
 
 
 def goals(document: Document) -> Lines:
@@ -27,19 +27,7 @@ def goals(document: Document) -> Lines:
     for quality, most in LARGEST_ERROR.items():
         found = {s["scene"]: own["rms"] for s in scenes if (own := own_bake(s, quality))}
         rows.append(goal_row(f"error at {quality} at most {most:.0%}", found, lambda x, m=most: x <= m, percent, max))
-    for quality in COMPARED_QUALITIES:
-        for peer, goal in FASTER_ON_CORNELL_BOX.items():
-            for where, chosen, least in (
-                ("on the Cornell box", [s for s in scenes if s["scene"] == "cornell_box"], goal),
-                ("elsewhere", [s for s in scenes if s["scene"] != "cornell_box"], FASTER_ELSEWHERE[peer]),
-            ):
-                found = {}
-                for scene in chosen:
-                    ratio = faster(scene, peer, quality, "seconds")
-                    if ratio is not None:
-                        found[scene["scene"]] = ratio.cost
-                name = f"{least:g} times faster than {peer} {where}, at the error of {quality}"
-                rows.append(goal_row(name, found, lambda x, g=least: x >= g, times, min))
+    rows += speed_rows(scenes)
     fewer = {s["scene"]: f.cost for s in scenes if (f := fewer_vertices(s, "GOOD")) is not None}
     rows.append(
         goal_row(
@@ -69,10 +57,30 @@ def goals(document: Document) -> Lines:
     return [
         "## Goals",
         "",
-        "What we want, the worst that was measured, and on which scene.",
+        *paragraph(
+            "What we want, the worst that was measured, and on which scene. How many times faster we are is judged by "
+            "wall clock or by processor time of all cores, whichever favours us less: on a machine that is busy with "
+            "other things seconds are longer for those who were measured then. So is the gain in the paper's table."
+        ),
         "",
         *table(("goal", "worst measured", "met"), rows),
     ]
+
+
+def speed_rows(scenes: Sequence[Document]) -> list[tuple[str, str, str]]:
+    """Return the goals of being faster than each peer: on the Cornell box, and elsewhere."""
+    rows = []
+    for quality in COMPARED_QUALITIES:
+        for peer, goal in FASTER_ON_CORNELL_BOX.items():
+            for where, chosen, least in (
+                ("on the Cornell box", [s for s in scenes if s["scene"] == "cornell_box"], goal),
+                ("elsewhere", [s for s in scenes if s["scene"] != "cornell_box"], FASTER_ELSEWHERE[peer]),
+            ):
+                ratios = ((s["scene"], surely_faster(s, peer, quality)) for s in chosen)
+                found = {scene: ratio for scene, ratio in ratios if ratio is not None}
+                name = f"{least:g} times faster than {peer} {where}, at the error of {quality}"
+                rows.append(goal_row(name, found, lambda x, g=least: x >= g, times, min))
+    return rows
 
 
 def goal_row(

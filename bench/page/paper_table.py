@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from ..methods import PAPER_GAINS
 from ..paper_table import costliest_stage, gain
-from ..results import Document, Entry, title
+from ..results import CLOCKS, Document, Entry, title
 from .markdown import Lines, paragraph, percent, seconds, table
 
 
@@ -19,12 +19,12 @@ def paper_table(measured: Document) -> Lines:
         u, a = row["uniform"], row["adaptive"]
         stage, loss = costliest_stage(row)
         goal = PAPER_GAINS.get(row["scene"]) if is_finest(row, measured["rows"]) else None
-        met = gain(row, "seconds") > (goal or 0.0)
+        met = min(gain(row, clock) for clock in CLOCKS) > (goal or 0.0)
         rows.append(
             (
                 f"{title(row['scene'])}, n = {row['minimum_size']:g} m",
                 *(f"{u[key]:,} / {a[key]:,}" for key in ("fragments", "vertices")),
-                *(f"{seconds(u[key])} / {seconds(a[key])}" for key in ("seconds", "processor_seconds")),
+                *(f"{seconds(u[clock])} / {seconds(a[clock])}" for clock in CLOCKS),
                 f"{percent(u['rms'])} / {percent(a['rms'])}",
                 f"{gain(row, 'fragments'):.1%}",
                 f"{gain(row, 'seconds'):.1%} ({gain(row, 'processor_seconds'):.1%})",
@@ -42,8 +42,8 @@ def paper_table(measured: Document) -> Lines:
             f"minimum size, threshold {measured['threshold']:g}, quality {measured['quality']}; measured "
             f"{measured['run'][:10]} by `make compare`. Both light the fragments that they end with in the same way, "
             f"and neither makes a face finer than the minimum size. *Gain*: of the time of the whole picture, by wall "
-            f"clock and, in brackets, by processor time; every row should be positive, and the finest of each scene "
-            f"above {finest}. *Stage*: where adaptive loses most, as a share of uniform's time."
+            f"clock and, in brackets, by processor time; every row should be positive by both, and the finest of each "
+            f"scene above {finest}. *Stage*: where adaptive loses most, as a share of uniform's time."
         ),
         "",
         *table((*header, "fewer fragments", "gain", "met", "stage"), rows),

@@ -93,6 +93,17 @@ def test_the_page_states_how_many_times_faster_and_whether_that_is_the_goal(tmp_
     assert "| Cornell box, GOOD | 2.00% | 0.25 | 40 (40) |" in text
 
 
+def test_a_goal_is_judged_by_the_clock_that_favours_us_less(tmp_path):
+    peer = entry("Mitsuba 3 at the probes", "64 samples", 30.0, 0.02)
+    by_processor = measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.02), {**peer, "processor_seconds": 20.0})
+    text = page(by_processor)
+    # 30 times by wall clock, 20 s over 2 s by processor time; 20 are wanted on this scene.
+    assert "| Cornell box, GOOD | 2.00% | 1.00 | ≤ 30 (10) of 20 |" in text
+    assert "on the Cornell box, at the error of GOOD | 10 (Cornell box) | **no** |" in text
+    by_wall = measured(tmp_path, entry("Radiosity Bake", "GOOD", 2.0, 0.02), {**peer, "processor_seconds": 200.0})
+    assert "on the Cornell box, at the error of GOOD | 15 (Cornell box) | **no** |" in page(by_wall)
+
+
 def test_the_page_says_when_the_machine_was_busy_and_when_peers_are_of_another_run(tmp_path):
     disturbed = {**entry("Radiosity Bake", "GOOD", 1.0, 0.02), "others": 0.5}
     text = page(measured(tmp_path, disturbed, entry("Cycles bake to vertices", "16", 9.0, 0.1, run="2025-12-24")))
