@@ -13,7 +13,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -29,6 +29,7 @@ from tools.package import ROOT
 from . import reference
 from .accuracy import irradiance_at_probes
 from .measure import Judged
+from .methods import CYCLES, MITSUBA, MITSUBA_VERTICES, RADIANCE
 from .scenes import even_size
 from .stopwatch import Cost, Instant, timed
 
@@ -334,33 +335,50 @@ def runs_of(case: Judged, wanted: Callable[[str], bool]) -> list[Run]:
     runs: list[Run] = []
     if wanted("mitsuba"):
         runs += [
-            Run("mitsuba", "Mitsuba 3 at the probes", f"{n} samples", lambda c, n=n: mitsuba(c, n))
-            for n in (16, 64, 256, 1024, 4096)
+            Run("mitsuba", MITSUBA, f"{n} samples", lambda c, n=n: mitsuba(c, n)) for n in (16, 64, 256, 1024, 4096)
         ]
-        runs += [
-            Run(
-                "mitsuba",
-                "Mitsuba 3 to vertices",
-                f"{n} samples, about {p} patches",
-                lambda c, n=n, p=p: mitsuba_to_vertices(c, n, p),
-            )
-            for p, n in ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256), (FINE, 1024))
-            if n * uniform_mesh(case.name, p).points <= MOST_MITSUBA_SAMPLES
-        ]
+        runs += runs_to_vertices(
+            case,
+            "mitsuba",
+            MITSUBA_VERTICES,
+            mitsuba_to_vertices,
+            ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256), (FINE, 1024)),
+            MOST_MITSUBA_SAMPLES,
+        )
     if wanted("radiance"):
-        runs += [
-            Run("radiance", "Radiance rtrace -I at the probes", e.name, lambda c, e=e: radiance(c, e))
-            for e in RADIANCE_EFFORTS
-        ]
+        runs += [Run("radiance", RADIANCE, e.name, lambda c, e=e: radiance(c, e)) for e in RADIANCE_EFFORTS]
     if wanted("cycles"):
-        runs += [
-            Run(
-                "cycles",
-                "Cycles bake to vertices",
-                f"{n} samples, about {p} patches",
-                lambda c, n=n, p=p: cycles(c, n, p),
-            )
-            for p, n in ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256))
-            if n * uniform_mesh(case.name, p).points <= MOST_CYCLES_SAMPLES
-        ]
+        runs += runs_to_vertices(
+            case,
+            "cycles",
+            CYCLES,
+            cycles,
+            ((COARSE, 16), (COARSE, 64), (COARSE, 256), (FINE, 256)),
+            MOST_CYCLES_SAMPLES,
+        )
     return runs
+
+
+def runs_to_vertices(
+    case: Judged,
+    peer: str,
+    method: str,
+    answer: Callable[[Judged, int, int], Answer],
+    settings: Sequence[tuple[int, int]],
+    most_samples: int,
+) -> list[Run]:
+    """Return runs of a program that computes the vertices of uniform meshes, those that would take minutes left out.
+
+    Parameters
+    ----------
+    answer : callable
+        Of the scene, the samples of each vertex and the patches of the mesh.
+    settings : sequence of (patches, samples)
+    most_samples : int
+        Of all vertices together.
+    """
+    return [
+        Run(peer, method, f"{n} samples, about {p} patches", lambda c, n=n, p=p: answer(c, n, p))
+        for p, n in settings
+        if n * uniform_mesh(case.name, p).points <= most_samples
+    ]
