@@ -154,20 +154,17 @@ def direct_light(
     count = len(points)
     if len(emitters.triangle) == 0 or count == 0:
         return DirectLight.none(count), np.zeros(count)
-    few = len(emitters.triangle) <= FEW_EMITTERS
     size = max(1, RAYS_PER_BATCH // shadow_rays)
-    if few:
+    light = _direct_of_many
+    if len(emitters.triangle) <= FEW_EMITTERS:
         size = max(1, min(size, FACTORS_PER_BATCH // len(emitters.triangle)))
+        light = _direct_of_each
     parts = []
     for first in range(0, count, size):
         part = slice(first, first + size)
         axes = normals[part]
         up = axes if lift is normals else lift[part]
-        if few:
-            found = _direct_of_each(emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed)
-        else:
-            found = _direct_of_many(emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed)
-        parts.append(found)
+        parts.append(light(emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed))
     return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
