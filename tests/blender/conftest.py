@@ -26,9 +26,40 @@ else:
         assert radiosity_bake.operators.bake.RADIOSITY_OT_bake.job is None, "a bake was left running"
 
     @pytest.fixture
-    def quick_bake(monkeypatch):
-        """Have bakes hand back the position of each corner as its colour, without tracing a ray."""
+    def run_instead(monkeypatch):
+        """Return a function that has bakes run another function in place of the core's."""
+
+        def replace(function):
+            monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: function)
+
+        return replace
+
+    @pytest.fixture
+    def quick_bake(run_instead):
+        """Have bakes hand back the position of each corner as its colour, without tracing a ray.
+
+        Returns the list of the (scene, settings) that bakes are then given.
+        """
         from tests.blender.making import position_bake
 
-        monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: position_bake)
-        return position_bake
+        given = []
+
+        def bake(scene, settings, progress):
+            given.append((scene, settings))
+            return position_bake(scene, settings, progress)
+
+        run_instead(bake)
+        return given
+
+    @pytest.fixture
+    def refused_settings(monkeypatch):
+        """Have the settings be refused, and return the sentence."""
+        from radiosity_bake.core.errors import SettingsError
+
+        sentence = "Threshold is 0; choose a value above 0 and up to 1"
+
+        def refuse(properties):
+            raise SettingsError(sentence)
+
+        monkeypatch.setattr("radiosity_bake.operators.bake.bake_settings", refuse)
+        return sentence

@@ -2,10 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects, materials and bakes made in one line each, for the tests of the Blender side."""
 
+import json
+from contextlib import contextmanager
+
 import bpy
 import numpy as np
+import pytest
+from radiosity_bake.core.errors import NoLightError
 from radiosity_bake.core.progress import Progress, no_progress
 from radiosity_bake.core.result import BakedMesh, BakeResult
+from radiosity_bake.operators import store
 
 CUBE_VERTICES = [(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]
 CUBE_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -24,9 +30,15 @@ def add_object(name, data, *, collection=None, select=False):
     obj = bpy.data.objects.new(name, data)
     (collection or bpy.context.scene.collection).objects.link(obj)
     if select:
-        obj.select_set(True)
-        bpy.context.view_layer.objects.active = obj
+        select_also(obj)
     return obj
+
+
+def select_also(*objects):
+    """Add objects to the selection, the last of them active."""
+    for obj in objects:
+        obj.select_set(True)
+    bpy.context.view_layer.objects.active = objects[-1]
 
 
 def add_cube(name="Cube", **options):
@@ -49,6 +61,17 @@ def add_collection(name, parent=None):
     collection = bpy.data.collections.new(name)
     (parent or bpy.context.scene.collection).children.link(collection)
     return collection
+
+
+def linked_from_library(folder, kind, name):
+    """Return a datablock of the open file, which becomes a library in `folder`, linked into an empty file."""
+    path = str(folder / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        setattr(wanted, kind, [name])
+    (linked,) = getattr(wanted, kind)
+    return linked
 
 
 def node_material(name, node_type, **inputs):
@@ -100,6 +123,40 @@ def use_image(material, identifier="Base Color"):
 
 def socket_or_none(node, identifier):
     return next((socket for socket in node.inputs if socket.identifier == identifier), None)
+
+
+def bake_selected(output=None):
+    """Bake what is selected, to the output that is given, if any."""
+    if output is not None:
+        bpy.context.scene.radiosity.output = output
+    assert bpy.ops.radiosity.bake() == {"FINISHED"}
+
+
+def report():
+    """Return the report of the last bake."""
+    return json.loads(bpy.context.scene.radiosity.report)
+
+
+@contextmanager
+def full_disk():
+    """Have the last thing that storing does fail, after all objects were changed; and expect the bake to fail of it."""
+
+    class Later(store.Journal):
+        def __exit__(self, kind, error, trace):
+            if error is not None:
+                return super().__exit__(kind, error, trace)
+            full = OSError("the disk is full")
+            super().__exit__(OSError, full, None)
+            raise full
+
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(RuntimeError, match="the disk is full"):
+        patch.setattr(store, "Journal", Later)
+        yield
+
+
+def dark_bake(scene, settings, progress=no_progress):
+    """Bake a scene that has no light."""
+    raise NoLightError("Nothing in the scene emits light")
 
 
 def position_bake(scene, settings, progress=no_progress, *, back=False):

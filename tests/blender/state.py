@@ -39,6 +39,16 @@ def file_state():
     }
 
 
+def differences(before, after, path=""):
+    """Return a line for everything in which two states differ."""
+    if isinstance(before, dict) and isinstance(after, dict):
+        found = []
+        for key in {**before, **after}:
+            found += differences(before.get(key, "missing"), after.get(key, "missing"), f"{path}/{key}")
+        return found
+    return [] if before == after else [f"{path}: {before} became {after}"]
+
+
 def _simple(struct):
     """Return the properties of a struct that hold plain values or point to datablocks."""
     values = {}

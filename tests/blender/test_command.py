@@ -14,7 +14,7 @@ from radiosity_bake.operators import command
 from radiosity_bake.operators.command import main
 from radiosity_bake.operators.settings import bake_settings
 
-from tests.blender.making import add_cube, add_lamp_mesh, add_object, add_plane, colours_of
+from tests.blender.making import add_cube, add_lamp_mesh, add_object, add_plane, colours_of, dark_bake
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -64,20 +64,11 @@ def test_only_the_objects_asked_for_are_baked(room):
     }
 
 
-def test_settings_come_from_the_options_and_else_from_the_file(room, monkeypatch):
-    seen = []
-
-    def look(scene, settings, progress):
-        from tests.blender.making import position_bake
-
-        seen.append(settings)
-        return position_bake(scene, settings, progress)
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: look)
+def test_settings_come_from_the_options_and_else_from_the_file(room, quick_bake):
     bpy.context.scene.radiosity.seed = 11
     options = "--output b.blend --threshold 0.05 --minimum-size 0.1 --quality HIGH --method UNIFORM --bake-to ORIGINAL"
     assert main([*options.split(), "--threads", "1", "--memory-limit", "256"]) == 0
-    (settings,) = seen
+    ((_, settings),) = quick_bake
     assert (settings.threshold, settings.minimum_size, settings.seed) == (0.05, 0.1, 11)
     assert (settings.quality, settings.method, settings.output) == ("HIGH", "UNIFORM", "ORIGINAL")
     assert (settings.threads, settings.memory_limit) == (1, 256)
@@ -169,13 +160,8 @@ def test_a_file_that_is_no_blend_file_is_a_sentence(tmp_path, monkeypatch, capsy
     assert "There is no file missing.blend" in capsys.readouterr().err
 
 
-def test_a_failed_bake_writes_nothing(room, monkeypatch, capsys):
-    from radiosity_bake.core.errors import NoLightError
-
-    def dark(scene, settings, progress):
-        raise NoLightError("Nothing in the scene emits light")
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: dark)
+def test_a_failed_bake_writes_nothing(room, run_instead, capsys):
+    run_instead(dark_bake)
     assert "Nothing in the scene emits light" in fails(["--output", "baked.blend"], capsys)
 
 

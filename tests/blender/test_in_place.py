@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The original output: values on the corners that the meshes have."""
 
+from functools import partial
+
 import bpy
 import numpy as np
 import pytest
@@ -10,27 +12,22 @@ from tests.blender.making import (
     add_cube,
     add_object,
     add_plane,
+    bake_selected,
     colours_of,
     corner_positions,
     diffuse_material,
+    linked_from_library,
     position_bake,
+    report,
+    select_also,
 )
 
 pytestmark = pytest.mark.usefixtures("quick_bake")
 
 
 def bake(*objects):
-    for obj in objects:
-        obj.select_set(True)
-        bpy.context.view_layer.objects.active = obj
-    bpy.context.scene.radiosity.output = "ORIGINAL"
-    assert bpy.ops.radiosity.bake() == {"FINISHED"}
-
-
-def warnings():
-    import json
-
-    return json.loads(bpy.context.scene.radiosity.report)["warnings"]
+    select_also(*objects)
+    bake_selected("ORIGINAL")
 
 
 @pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (-1.0, 2.0, 1.0)])
@@ -43,7 +40,7 @@ def test_every_corner_of_the_mesh_gets_its_value(scale):
     assert len(mesh.polygons) == 6
     assert colours_of(mesh)[:, :3] == pytest.approx(corner_positions(cube), abs=1e-6)
     assert colours_of(mesh, "Irradiance")[:, :3] == pytest.approx(0.5 * corner_positions(cube), abs=1e-6)
-    assert warnings() == []
+    assert report()["warnings"] == []
 
 
 def test_radiosity_is_active_for_the_viewport_and_the_renderer():
@@ -60,7 +57,7 @@ def test_modifiers_that_keep_the_corners_need_no_transfer():
     cube = add_cube()
     cube.modifiers.new("Shift", "DISPLACE").strength = 0.0
     bake(cube)
-    assert warnings() == []
+    assert report()["warnings"] == []
     assert colours_of(cube.data)[:, :3] == pytest.approx(corner_positions(cube), abs=1e-6)
 
 
@@ -69,7 +66,7 @@ def test_modifiers_that_change_the_faces_are_said_and_values_come_from_the_neare
     modifier = plane.modifiers.new("Subdivision", "SUBSURF")
     modifier.subdivision_type, modifier.levels, modifier.render_levels = "SIMPLE", 3, 3
     bake(plane)
-    (warning,) = warnings()
+    (warning,) = report()["warnings"]
     assert '"Plane"' in warning and "modifiers" in warning
     # The look-up goes a thousandth inwards.
     assert colours_of(plane.data)[:, :3] == pytest.approx(corner_positions(plane), abs=2e-3)
@@ -105,14 +102,12 @@ def test_a_users_attribute_of_the_same_name_is_kept_aside():
     assert tuple(aside.data[0].color) == (1.0, 0.0, 0.0, 1.0)
 
 
-def test_a_vertex_group_of_the_same_name_is_a_sentence_before_anything_is_done(capfd, monkeypatch):
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: pytest.fail("the bake began"))
+def test_a_vertex_group_of_the_same_name_is_a_sentence_before_anything_is_done(capfd, quick_bake):
     cube = add_cube()
     cube.vertex_groups.new(name="Radiosity")
-    cube.select_set(True)
-    bpy.context.scene.radiosity.output = "ORIGINAL"
     with pytest.raises(RuntimeError, match='vertex group named "Radiosity"'):
-        bpy.ops.radiosity.bake()
+        bake(cube)
+    assert quick_bake == []
     assert len(cube.data.color_attributes) == 0
     assert cube.radiosity.kind == "NONE"
     assert "could not be created" not in "".join(capfd.readouterr())
@@ -144,33 +139,24 @@ def test_an_object_without_slots_gets_one():
     assert len(cube.material_slots) == 1
 
 
-def test_baking_again_uses_the_own_materials_and_keeps_what_is_remembered(monkeypatch):
+def test_baking_again_uses_the_own_materials_and_keeps_what_is_remembered(quick_bake):
     paint = diffuse_material(colour=(0.25, 0.5, 0.75, 1.0))
     cube = add_cube(materials=[paint])
     bake(cube)
-    seen = []
-
-    def look(scene, settings, progress):
-        seen.append(scene)
-        return position_bake(scene, settings, progress)
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: look)
     bake(cube)
-    assert seen[0].meshes[0].reflectance[0] == pytest.approx([0.25, 0.5, 0.75])
-    assert not np.any(seen[0].meshes[0].emission)
+    (mesh,) = quick_bake[-1][0].meshes
+    assert mesh.reflectance[0] == pytest.approx([0.25, 0.5, 0.75])
+    assert not np.any(mesh.emission)
     assert [slot.material for slot in cube.radiosity.slots] == [paint]
     assert sorted(a.name for a in cube.data.color_attributes) == ["Irradiance", "Radiosity"]
 
 
-def test_values_of_the_back_are_removed_when_a_second_bake_has_none(monkeypatch):
+def test_values_of_the_back_are_removed_when_a_second_bake_has_none(run_instead):
     plane = add_plane()
-    with monkeypatch.context() as patch:
-        patch.setattr(
-            "radiosity_bake.operators.bake._core_bake",
-            lambda: lambda scene, settings, progress: position_bake(scene, settings, progress, back=True),
-        )
-        bake(plane)
+    run_instead(partial(position_bake, back=True))
+    bake(plane)
     assert "Radiosity Back" in plane.data.color_attributes
+    run_instead(position_bake)
     bake(plane)
     assert "Radiosity Back" not in plane.data.color_attributes
     assert len([m for m in bpy.data.materials if "radiosity_display" in m]) == 1
@@ -178,12 +164,7 @@ def test_values_of_the_back_are_removed_when_a_second_bake_has_none(monkeypatch)
 
 def test_a_local_object_with_a_linked_mesh_gets_a_local_copy(tmp_path):
     add_cube("Linked")
-    path = str(tmp_path / "library.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    with bpy.data.libraries.load(path, link=True) as (_, wanted):
-        wanted.meshes = ["Linked"]
-    (mesh,) = wanted.meshes
+    mesh = linked_from_library(tmp_path, "meshes", "Linked")
     cube = add_object("Local", mesh)
     bake(cube)
     assert cube.data.library is None

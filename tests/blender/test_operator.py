@@ -2,16 +2,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The bake operator: one clear sentence for whatever cannot be done, and nothing changed then."""
 
-import json
-import time
-from types import SimpleNamespace
-
 import bpy
 import numpy as np
 import pytest
-from radiosity_bake.core.errors import Cancelled, NoLightError
-from radiosity_bake.core.progress import Progress
-from radiosity_bake.operators import bake as bake_module
+from radiosity_bake.core.errors import Cancelled
 from radiosity_bake.operators.bake import RADIOSITY_OT_bake, bake_objects, reason_not_to_bake
 from radiosity_bake.operators.settings import bake_settings
 
@@ -21,23 +15,13 @@ from tests.blender.making import (
     add_mesh,
     add_object,
     add_plane,
+    bake_selected,
     colours_of,
+    linked_from_library,
     position_bake,
+    report,
 )
 from tests.blender.state import file_state
-
-
-def bake():
-    return bpy.ops.radiosity.bake()
-
-
-def report():
-    return json.loads(bpy.context.scene.radiosity.report)
-
-
-def run_instead(monkeypatch, function):
-    monkeypatch.setattr(bake_module, "_core_bake", lambda: function)
-
 
 # ---------------------------------------------------------------------------------------------------------------------
 # When the button is grey
@@ -47,7 +31,7 @@ def test_the_button_is_grey_without_a_selected_mesh():
     assert reason_not_to_bake(bpy.context) == "Select the meshes to bake"
     assert not bpy.ops.radiosity.bake.poll()
     with pytest.raises(RuntimeError, match="Select the meshes to bake"):
-        bake()
+        bpy.ops.radiosity.bake()
 
 
 def test_the_button_is_grey_when_only_other_objects_are_selected():
@@ -69,7 +53,7 @@ def test_the_button_is_grey_without_the_ray_library_and_says_why(monkeypatch):
     monkeypatch.setattr("radiosity_bake.core.visibility.ray_library_problem", lambda: why)
     assert reason_not_to_bake(bpy.context) == why
     with pytest.raises(RuntimeError, match=why):
-        bake()
+        bpy.ops.radiosity.bake()
 
 
 def test_the_button_is_grey_while_a_bake_runs(monkeypatch):
@@ -80,12 +64,7 @@ def test_the_button_is_grey_while_a_bake_runs(monkeypatch):
 
 def test_the_button_is_grey_when_all_selected_meshes_are_linked(tmp_path):
     add_cube("Linked")
-    path = str(tmp_path / "library.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=path)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    with bpy.data.libraries.load(path, link=True) as (_, wanted):
-        wanted.objects = ["Linked"]
-    (linked,) = wanted.objects
+    linked = linked_from_library(tmp_path, "objects", "Linked")
     bpy.context.scene.collection.objects.link(linked)
     linked.select_set(True)
     assert "linked from another file" in reason_not_to_bake(bpy.context)
@@ -99,7 +78,7 @@ def test_a_mesh_without_faces_is_an_error_with_its_name():
     add_mesh("Points", [(0, 0, 0)], [], select=True)
     before = file_state()
     with pytest.raises(RuntimeError, match=r'None of the selected objects can be baked: "Points" has no faces$'):
-        bake()
+        bpy.ops.radiosity.bake()
     assert file_state() == before
 
 
@@ -109,7 +88,7 @@ def test_a_selection_that_cannot_be_baked_is_one_sentence_about_the_whole():
     add_mesh("Points", [(0, 0, 0)], [], select=True)
     names = '"A", "B", "C" and 1 more'
     with pytest.raises(RuntimeError) as caught:
-        bake()
+        bpy.ops.radiosity.bake()
     assert str(caught.value).strip() == (
         f'Error: None of the selected objects can be baked: {names} are not shown in renders, and "Points" has no faces'
     )
@@ -119,7 +98,7 @@ def test_a_scene_without_light_is_an_error_and_nothing_changes():
     add_cube(select=True)
     before = file_state()
     with pytest.raises(RuntimeError, match=r"^Error: [A-Z].*(light|emit)"):
-        bake()
+        bpy.ops.radiosity.bake()
     assert file_state() == before
 
 
@@ -127,92 +106,111 @@ def test_a_scene_without_light_is_an_error_and_nothing_changes():
 def test_other_objects_in_the_selection_are_skipped_and_named():
     add_object("Empty", None, select=True)
     add_cube(select=True)
-    assert bake() == {"FINISHED"}
+    bake_selected()
     assert any('"Empty"' in warning for warning in report()["warnings"])
 
 
-def test_a_cancelled_bake_is_no_error_and_changes_nothing(monkeypatch):
+@pytest.mark.usefixtures("quick_bake")
+def test_invalid_settings_are_a_sentence(refused_settings):
+    add_cube(select=True)
+    with pytest.raises(RuntimeError, match=refused_settings):
+        bpy.ops.radiosity.bake()
+
+
+def test_a_cancelled_bake_is_no_error_and_changes_nothing(run_instead):
     def cancelled(scene, settings, progress):
         raise Cancelled
 
     add_cube(select=True)
     before = file_state()
-    run_instead(monkeypatch, cancelled)
-    assert bake() == {"CANCELLED"}
+    run_instead(cancelled)
+    assert bpy.ops.radiosity.bake() == {"CANCELLED"}
     assert file_state() == before
 
 
-def test_a_bug_keeps_its_traceback(monkeypatch):
+def test_a_bug_keeps_its_traceback(run_instead):
     def broken(scene, settings, progress):
         raise ZeroDivisionError("a bug in the numerics")
 
     add_cube(select=True)
-    run_instead(monkeypatch, broken)
+    run_instead(broken)
     with pytest.raises(RuntimeError, match=r"in broken\n.*raise ZeroDivisionError"):
-        bake()
+        bpy.ops.radiosity.bake()
 
 
-def change_during_bake(monkeypatch, change):
+def change_during_bake(run_instead, change):
     """Have `change` happen between reading and storing, as it may while the bake runs in its thread."""
 
     def bake_and_change(scene, settings, progress):
         change()
         return position_bake(scene, settings, progress)
 
-    run_instead(monkeypatch, bake_and_change)
+    run_instead(bake_and_change)
 
 
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
-def test_an_object_deleted_during_the_bake_is_a_sentence(monkeypatch, output):
+def test_an_object_deleted_during_the_bake_is_a_sentence(run_instead, output):
     cube = add_cube(select=True)
     add_plane(select=True)
     bpy.context.scene.radiosity.output = output
-    change_during_bake(monkeypatch, lambda: bpy.data.objects.remove(cube))
+    change_during_bake(run_instead, lambda: bpy.data.objects.remove(cube))
     with pytest.raises(RuntimeError, match='"Cube" was deleted during the bake; nothing was stored'):
-        bake()
+        bpy.ops.radiosity.bake()
     assert [obj.name for obj in bpy.data.objects] == ["Plane"]
     assert bpy.data.objects["Plane"].radiosity.kind == "NONE"
 
 
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
-def test_a_mesh_edited_during_the_bake_is_a_sentence(monkeypatch, output):
+def test_a_mesh_edited_during_the_bake_is_a_sentence(run_instead, output):
     cube = add_cube(select=True)
     bpy.context.scene.radiosity.output = output
-    change_during_bake(monkeypatch, lambda: setattr(cube.data.vertices[0].co, "x", -3.0))
+    change_during_bake(run_instead, lambda: setattr(cube.data.vertices[0].co, "x", -3.0))
     with pytest.raises(RuntimeError, match='The mesh of "Cube" was edited during the bake'):
-        bake()
+        bpy.ops.radiosity.bake()
     assert cube.radiosity.kind == "NONE"
     assert len(cube.data.color_attributes) == 0
 
 
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
-def test_edit_mode_entered_during_the_bake_is_a_sentence(monkeypatch, output):
+def test_edit_mode_entered_during_the_bake_is_a_sentence(run_instead, output):
     cube = add_cube(select=True)
     bpy.context.scene.radiosity.output = output
-    change_during_bake(monkeypatch, lambda: bpy.ops.object.mode_set(mode="EDIT"))
+    change_during_bake(run_instead, lambda: bpy.ops.object.mode_set(mode="EDIT"))
     with pytest.raises(RuntimeError, match='"Cube" is in edit mode; nothing was stored'):
-        bake()
+        bpy.ops.radiosity.bake()
     bpy.ops.object.mode_set(mode="OBJECT")
     assert cube.radiosity.kind == "NONE"
     assert len(cube.data.color_attributes) == 0
 
 
-def test_an_object_renamed_during_the_bake_is_found(monkeypatch):
+@pytest.mark.usefixtures("quick_bake")
+def test_a_refined_object_that_is_edited_is_not_replaced(run_instead):
+    add_cube(select=True)
+    bake_selected()
+    output = bpy.context.object
+    change_during_bake(run_instead, lambda: bpy.ops.object.mode_set(mode="EDIT"))
+    with pytest.raises(RuntimeError, match='"Cube Radiosity" is in edit mode; nothing was stored'):
+        bpy.ops.radiosity.bake()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert bpy.data.objects["Cube Radiosity"] == output
+
+
+def test_an_object_renamed_during_the_bake_is_found(run_instead):
     cube = add_cube(select=True)
-    change_during_bake(monkeypatch, lambda: setattr(cube, "name", "Renamed"))
-    assert bake() == {"FINISHED"}
+    change_during_bake(run_instead, lambda: setattr(cube, "name", "Renamed"))
+    bake_selected()
     assert "Renamed Radiosity" in bpy.data.objects
 
 
-def test_an_object_moved_during_the_bake_is_baked_where_it_was_and_named(monkeypatch):
+def test_an_object_moved_during_the_bake_is_baked_where_it_was_and_named(run_instead):
     cube = add_cube(select=True)
 
     def move():
         cube.location.x = 5.0
         bpy.context.view_layer.update()
 
-    change_during_bake(monkeypatch, move)
-    assert bake() == {"FINISHED"}
+    change_during_bake(run_instead, move)
+    bake_selected()
     assert any("moved" in warning for warning in report()["warnings"])
     assert colours_of(bpy.data.objects["Cube Radiosity"].data)[:, 0].max() == pytest.approx(1.0)
 
@@ -224,7 +222,7 @@ def test_an_object_moved_during_the_bake_is_baked_where_it_was_and_named(monkeyp
 @pytest.mark.usefixtures("quick_bake")
 def test_the_report_has_the_cores_numbers_the_objects_and_the_seconds_of_each_side():
     add_cube(select=True)
-    bake()
+    bake_selected()
     assert report()["objects"] == ["Cube Radiosity"]
     assert report()["patches"] == 1
     seconds = report()["seconds"]
@@ -235,22 +233,22 @@ def test_the_report_has_the_cores_numbers_the_objects_and_the_seconds_of_each_si
 def test_the_report_says_where_the_time_went():
     add_cube(select=True)
     add_lamp_mesh()
-    bake()
+    bake_selected()
     profile = report()["profile"]
     assert set(profile) == {"ray_library", "arrays", "blender"}
     assert sum(profile.values()) == pytest.approx(1.0, abs=1e-3)
     assert min(profile.values()) > 0.0
 
 
-def test_warnings_of_the_core_are_in_the_report(monkeypatch):
+def test_warnings_of_the_core_are_in_the_report(run_instead):
     def warn(scene, settings, progress):
         result = position_bake(scene, settings, progress)
         result.report["warnings"] = ["Light leaks under the wall"]
         return result
 
     add_cube(select=True)
-    run_instead(monkeypatch, warn)
-    bake()
+    run_instead(warn)
+    bake_selected()
     assert "Light leaks under the wall" in report()["warnings"]
 
 
@@ -258,280 +256,6 @@ def test_progress_reaches_the_callback(quick_bake):
     cube, seen = add_cube(), []
     bake_objects(bpy.context, [cube], bake_settings(bpy.context.scene.radiosity), seen.append)
     assert [message.stage for message in seen] == ["Form factors", "Gathering"]
-
-
-# ---------------------------------------------------------------------------------------------------------------------
-# The modal door, without a window: events and a context are all it needs
-
-
-class Window:
-    """The part of a context that the modal door uses beside the file."""
-
-    def __init__(self):
-        self.status, self.timers, self.handlers, self.progress = None, 0, 0, None
-        self.window_manager = self
-        self.workspace = self
-        self.windows = ()
-        self.window = self.space_data = None
-        self.scene, self.view_layer = bpy.context.scene, bpy.context.view_layer
-        self.selected_objects = bpy.context.selected_objects
-
-    @property
-    def mode(self):
-        return bpy.context.mode
-
-    def evaluated_depsgraph_get(self):
-        return bpy.context.evaluated_depsgraph_get()
-
-    def event_timer_add(self, seconds, window):
-        self.timers += 1
-        return "timer"
-
-    def event_timer_remove(self, timer):
-        self.timers -= 1
-
-    def modal_handler_add(self, operator):
-        self.handlers += 1
-
-    def progress_begin(self, least, most):
-        self.progress = least
-
-    def progress_update(self, value):
-        self.progress = value
-
-    def progress_end(self):
-        self.progress = None
-
-    def status_text_set(self, text):
-        self.status = text
-
-
-class ModalBake:
-    """The operator's methods on a plain object, since Blender alone can make operators."""
-
-    def __init__(self):
-        self.reports = []
-
-    def report(self, kind, text):
-        self.reports.append((*kind, text))
-
-    def __getattr__(self, name):
-        return getattr(RADIOSITY_OT_bake, name).__get__(self)
-
-
-TIMER = SimpleNamespace(type="TIMER", value="NOTHING")
-ESC = SimpleNamespace(type="ESC", value="PRESS")
-MOUSE = SimpleNamespace(type="MOUSEMOVE", value="NOTHING")
-
-
-def until_it_ends(operator, window):
-    began = time.monotonic()
-    while time.monotonic() - began < 10.0:
-        state = operator.modal(window, TIMER)
-        if state != {"PASS_THROUGH"}:
-            return state
-        time.sleep(0.01)
-    raise AssertionError("the bake did not end")
-
-
-def assert_left(window):
-    assert RADIOSITY_OT_bake.job is None
-    assert (window.timers, window.progress, window.status) == (0, None, None)
-
-
-@pytest.mark.usefixtures("quick_bake")
-def test_a_modal_bake_lets_other_events_pass_and_stores_at_its_end():
-    add_cube(select=True)
-    operator, window = ModalBake(), Window()
-    assert operator.invoke(window, None) == {"RUNNING_MODAL"}
-    assert (window.timers, window.handlers) == (1, 1)
-    assert "Esc" in window.status
-    assert operator.modal(window, MOUSE) == {"PASS_THROUGH"}
-    assert until_it_ends(operator, window) == {"FINISHED"}
-    assert_left(window)
-    assert "Cube Radiosity" in bpy.data.objects
-    assert operator.reports[-1][0] == "INFO"
-
-
-def until_it_waits(operator, window):
-    began = time.monotonic()
-    while "Leave edit mode to finish the bake" not in window.status:
-        assert operator.modal(window, TIMER) == {"PASS_THROUGH"}
-        assert time.monotonic() - began < 10.0
-        time.sleep(0.01)
-
-
-@pytest.mark.usefixtures("quick_bake")
-@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
-def test_a_bake_that_ends_in_edit_mode_is_stored_when_the_mode_is_left(output):
-    cube = add_cube(select=True)
-    bpy.context.scene.radiosity.output = output
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    bpy.ops.object.mode_set(mode="EDIT")
-    until_it_waits(operator, window)
-    assert operator.modal(window, TIMER) == operator.modal(window, MOUSE) == {"PASS_THROUGH"}
-    assert cube.radiosity.kind == "NONE"
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert operator.modal(window, TIMER) == {"FINISHED"}
-    assert_left(window)
-    assert cube.radiosity.kind != "NONE"
-
-
-@pytest.mark.usefixtures("quick_bake")
-def test_a_bake_that_waits_for_the_end_of_edit_mode_can_be_cancelled():
-    cube = add_cube(select=True)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    bpy.ops.object.mode_set(mode="EDIT")
-    until_it_waits(operator, window)
-    assert operator.modal(window, ESC) == {"CANCELLED"}
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert_left(window)
-    assert cube.radiosity.kind == "NONE"
-
-
-def test_an_error_does_not_wait_for_the_end_of_edit_mode(monkeypatch):
-    def dark(scene, settings, progress):
-        raise NoLightError("Nothing in the scene emits light")
-
-    add_cube(select=True)
-    run_instead(monkeypatch, dark)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    bpy.ops.object.mode_set(mode="EDIT")
-    assert until_it_ends(operator, window) == {"CANCELLED"}
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert operator.reports == [("ERROR", "Nothing in the scene emits light")]
-
-
-@pytest.mark.usefixtures("quick_bake")
-def test_a_refined_object_that_is_edited_is_not_replaced(monkeypatch):
-    add_cube(select=True)
-    bake()
-    output = bpy.context.object
-    change_during_bake(monkeypatch, lambda: bpy.ops.object.mode_set(mode="EDIT"))
-    with pytest.raises(RuntimeError, match='"Cube Radiosity" is in edit mode; nothing was stored'):
-        bake()
-    bpy.ops.object.mode_set(mode="OBJECT")
-    assert bpy.data.objects["Cube Radiosity"] == output
-
-
-def slow(scene, settings, progress):
-    for step in range(1000):
-        progress(Progress("Form factors", step / 1000, f"{step} rays"))
-        time.sleep(0.01)
-
-
-def test_a_modal_bake_shows_stage_share_and_counts(monkeypatch):
-    add_cube(select=True)
-    run_instead(monkeypatch, slow)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    while not RADIOSITY_OT_bake.job.latest.detail:
-        operator.modal(window, TIMER)
-    assert "Form factors" in window.status and "rays" in window.status and "%" in window.status
-    operator.modal(window, ESC)
-
-
-def test_esc_ends_a_modal_bake_within_half_a_second_and_changes_nothing(monkeypatch):
-    add_cube(select=True)
-    before = file_state()
-    run_instead(monkeypatch, slow)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    time.sleep(0.05)
-    began = time.monotonic()
-    assert operator.modal(window, ESC) == {"CANCELLED"}
-    assert time.monotonic() - began < 0.5
-    assert_left(window)
-    assert operator.reports[-1] == ("INFO", "Bake cancelled; nothing was changed")
-    assert file_state() == before
-
-
-def test_esc_does_not_wait_for_a_thread_that_does_not_listen(monkeypatch):
-    add_cube(select=True)
-    run_instead(monkeypatch, lambda scene, settings, progress: time.sleep(1.0))
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    began = time.monotonic()
-    assert operator.modal(window, ESC) == {"CANCELLED"}
-    assert time.monotonic() - began < 0.5
-    assert_left(window)
-
-
-def test_the_cancel_button_ends_a_modal_bake(monkeypatch):
-    add_cube(select=True)
-    run_instead(monkeypatch, slow)
-    operator, window = ModalBake(), Window()
-    assert not bpy.ops.radiosity.cancel.poll()
-    operator.invoke(window, None)
-    assert bpy.ops.radiosity.cancel() == {"FINISHED"}
-    assert operator.modal(window, TIMER) == {"CANCELLED"}
-    assert_left(window)
-
-
-def test_opening_another_file_ends_a_modal_bake(monkeypatch):
-    add_cube(select=True)
-    run_instead(monkeypatch, slow)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    operator.cancel(window)
-    assert_left(window)
-
-
-def test_an_error_of_a_modal_bake_is_a_sentence(monkeypatch):
-    def dark(scene, settings, progress):
-        raise NoLightError("Nothing in the scene emits light")
-
-    add_cube(select=True)
-    run_instead(monkeypatch, dark)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    assert until_it_ends(operator, window) == {"CANCELLED"}
-    assert operator.reports == [("ERROR", "Nothing in the scene emits light")]
-    assert_left(window)
-
-
-def test_a_bug_in_a_modal_bake_leaves_nothing_running_and_keeps_its_traceback(monkeypatch):
-    def broken(scene, settings, progress):
-        raise ZeroDivisionError
-
-    add_cube(select=True)
-    run_instead(monkeypatch, broken)
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    with pytest.raises(ZeroDivisionError) as caught:
-        until_it_ends(operator, window)
-    assert caught.traceback[-1].name == "broken"
-    assert_left(window)
-
-
-def test_a_modal_bake_stores_in_the_scene_that_it_read(monkeypatch, quick_bake):
-    add_cube(select=True)
-    scene = bpy.context.scene
-    operator, window = ModalBake(), Window()
-    operator.invoke(window, None)
-    other = bpy.data.scenes.new("Other")
-    window.scene, window.view_layer = other, other.view_layers[0]
-    assert until_it_ends(operator, window) == {"FINISHED"}
-    assert scene.radiosity.report and not other.radiosity.report
-    assert "Cube Radiosity" in scene.objects
-
-
-def test_invalid_settings_are_a_sentence(monkeypatch, quick_bake):
-    from radiosity_bake.core.errors import SettingsError
-
-    def refuse(properties):
-        raise SettingsError("Threshold is 0; choose a value above 0 and up to 1")
-
-    add_cube(select=True)
-    monkeypatch.setattr(bake_module, "bake_settings", refuse)
-    with pytest.raises(RuntimeError, match="Threshold is 0"):
-        bake()
-    operator = ModalBake()
-    assert operator.invoke(Window(), None) == {"CANCELLED"}
-    assert operator.reports[0][0] == "ERROR"
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -546,7 +270,7 @@ def test_a_floor_under_a_lamp_is_brightest_in_its_middle(output):
     bpy.context.scene.radiosity.output = output
     bpy.context.scene.radiosity.quality = "DRAFT"
     add_lamp_mesh(strength=10.0)
-    assert bake() == {"FINISHED"}
+    bake_selected()
     colours = colours_of(bpy.context.object.data)
     assert np.all(np.isfinite(colours)) and colours[:, :3].min() > 0.0
     if output == "REFINED":

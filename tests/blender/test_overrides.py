@@ -5,7 +5,17 @@
 import bpy
 import pytest
 
-from tests.blender.making import add_cube, colours_of, corner_positions, diffuse_material
+from tests.blender.making import (
+    add_cube,
+    bake_selected,
+    colours_of,
+    corner_positions,
+    diffuse_material,
+    full_disk,
+    linked_from_library,
+    select_also,
+)
+from tests.blender.state import differences, file_state
 
 pytestmark = pytest.mark.usefixtures("quick_bake")
 
@@ -16,25 +26,14 @@ def overridden(tmp_path):
 
     def link(with_mesh=False):
         add_cube("Linked", materials=[diffuse_material("Paint")])
-        path = str(tmp_path / "library.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-        bpy.ops.wm.read_factory_settings(use_empty=True)
-        with bpy.data.libraries.load(path, link=True) as (_, wanted):
-            wanted.objects = ["Linked"]
-        cube = wanted.objects[0].override_create()
+        cube = linked_from_library(tmp_path, "objects", "Linked").override_create()
         bpy.context.scene.collection.objects.link(cube)
         if with_mesh:
             cube.data = cube.data.override_create()
-        cube.select_set(True)
-        bpy.context.view_layer.objects.active = cube
+        select_also(cube)
         return cube
 
     return link
-
-
-def bake(output):
-    bpy.context.scene.radiosity.output = output
-    assert bpy.ops.radiosity.bake() == {"FINISHED"}
 
 
 def saved_and_opened(tmp_path):
@@ -48,7 +47,7 @@ def saved_and_opened(tmp_path):
 @pytest.mark.parametrize("with_mesh", [False, True])
 def test_an_override_is_baked_in_place_on_a_mesh_of_its_own(overridden, with_mesh):
     cube = overridden(with_mesh)
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     assert cube.data.library is None and cube.data.override_library is None
     assert colours_of(cube.data)[:, :3] == pytest.approx(corner_positions(cube), abs=1e-6)
 
@@ -58,7 +57,7 @@ def test_an_override_is_baked_in_place_on_a_mesh_of_its_own(overridden, with_mes
 def test_a_baked_override_remembers_what_was_there_in_the_saved_file(overridden, tmp_path, outputs, with_mesh):
     overridden(with_mesh)
     for output in outputs:
-        bake(output)
+        bake_selected(output)
     cube = saved_and_opened(tmp_path)
     assert cube.radiosity.kind == ("SOURCE" if outputs[-1] == "REFINED" else "ORIGINAL")
     assert bpy.ops.radiosity.restore() == {"FINISHED"}
@@ -71,13 +70,9 @@ def test_a_baked_override_remembers_what_was_there_in_the_saved_file(overridden,
     assert [slot.material.name for slot in cube.material_slots] == ["Paint"]
 
 
-def test_a_bake_of_an_override_that_cannot_be_stored_changes_nothing(overridden, monkeypatch):
-    from tests.blender.state import file_state
-    from tests.blender.test_restore import differences, fail_at_the_end
-
+def test_a_bake_of_an_override_that_cannot_be_stored_changes_nothing(overridden):
     overridden()
     before = file_state()
-    fail_at_the_end(monkeypatch)
-    with pytest.raises(RuntimeError, match="the disk is full"):
-        bake("ORIGINAL")
+    with full_disk():
+        bake_selected("ORIGINAL")
     assert differences(before, file_state()) == []

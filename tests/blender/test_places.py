@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Refined objects that are moved, and pairs of which one was deleted."""
 
-import json
-
 import bpy
 import numpy as np
 import pytest
@@ -13,13 +11,14 @@ from tests.blender.making import (
     add_cube,
     add_object,
     add_plane,
+    bake_selected,
     colours_of,
     corner_positions,
     diffuse_material,
-    position_bake,
+    full_disk,
+    report,
 )
-from tests.blender.state import file_state
-from tests.blender.test_restore import bake, differences, fail_at_the_end
+from tests.blender.state import differences, file_state
 
 pytestmark = pytest.mark.usefixtures("quick_bake")
 
@@ -31,17 +30,13 @@ def refined(name):
 def baked_cube(prepare=lambda cube: None):
     cube = add_cube("Cube", materials=[diffuse_material("Paint")], select=True)
     prepare(cube)
-    bake("REFINED")
+    bake_selected("REFINED")
     return cube, refined("Cube")
 
 
 def matrix(obj):
     bpy.context.view_layer.update()
     return np.array(obj.matrix_world)
-
-
-def warnings():
-    return json.loads(bpy.context.scene.radiosity.report)["warnings"]
 
 
 def with_parent(cube):
@@ -51,6 +46,10 @@ def with_parent(cube):
 
 def with_constraint(cube):
     cube.constraints.new("COPY_SCALE").target = add_object("Target", None)
+
+
+def animated(cube):
+    cube.keyframe_insert("location", frame=1)
 
 
 def turned_by_quaternion(cube):
@@ -63,10 +62,10 @@ def test_a_refined_object_that_was_moved_is_baked_where_it_is(prepare):
     output.location, output.scale = (5.0, 0.0, 0.0), (1.0, 2.0, 1.0)
     output.rotation_euler, output.rotation_quaternion = (0.1, 0.2, 0.3), (0.6, 0.8, 0.0, 0.0)
     moved = matrix(output)
-    bake("REFINED")
+    bake_selected("REFINED")
     assert matrix(refined("Cube")) == pytest.approx(moved, abs=1e-6)
     assert colours_of(refined("Cube").data)[:, :3] == pytest.approx(corner_positions(refined("Cube")), abs=1e-5)
-    assert warnings() == []
+    assert report()["warnings"] == []
     bpy.ops.radiosity.restore()
     assert matrix(cube) == pytest.approx(moved, abs=1e-6)
 
@@ -74,7 +73,7 @@ def test_a_refined_object_that_was_moved_is_baked_where_it_is(prepare):
 def test_restore_keeps_a_move_and_brings_all_else_back():
     cube = add_cube("Cube", materials=[diffuse_material("Paint")], select=True)
     before = file_state()
-    bake("REFINED")
+    bake_selected("REFINED")
     output = refined("Cube")
     output.matrix_world = Matrix.Translation((1.0, 2.0, 3.0))
     bpy.ops.radiosity.restore()
@@ -89,7 +88,7 @@ def test_a_refined_object_that_was_given_a_parent_keeps_it():
     parent.location.x = 7.0
     output.parent = parent
     moved = matrix(output)
-    bake("REFINED")
+    bake_selected("REFINED")
     assert matrix(refined("Cube")) == pytest.approx(moved, abs=1e-6)
     bpy.ops.radiosity.restore()
     assert cube.parent == parent
@@ -98,26 +97,21 @@ def test_a_refined_object_that_was_given_a_parent_keeps_it():
 def test_an_original_that_a_script_moved_stays_where_the_script_put_it():
     cube, _ = baked_cube()
     cube.location.x = 5.0
-    bake("REFINED")
+    bake_selected("REFINED")
     assert refined("Cube").location.x == 5.0
     assert colours_of(refined("Cube").data)[:, 0].min() == pytest.approx(4.0)
 
 
-def test_a_moved_refined_object_that_is_not_selected_lights_from_where_it_is(monkeypatch):
+def test_a_moved_refined_object_that_is_not_selected_lights_from_where_it_is(quick_bake):
     _, output = baked_cube()
     output.location.x = 5.0
     bpy.ops.object.select_all(action="DESELECT")
     add_plane(select=True)
     before = file_state()
-    seen = []
-
-    def look(scene, settings, progress):
-        seen.append({mesh.name: mesh.vertices[:, 0].mean() for mesh in scene.meshes})
-        return position_bake(scene, settings, progress)
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: look)
-    bake("REFINED")
-    assert seen == [{"Cube": pytest.approx(5.0), "Plane": pytest.approx(0.0)}]
+    bake_selected("REFINED")
+    scene, _ = quick_bake[-1]
+    middles = {mesh.name: mesh.vertices[:, 0].mean() for mesh in scene.meshes}
+    assert middles == {"Cube": pytest.approx(5.0), "Plane": pytest.approx(0.0)}
     bpy.ops.radiosity.restore()
     assert differences(before["objects"]["Cube Radiosity"], file_state()["objects"]["Cube Radiosity"]) == []
 
@@ -127,19 +121,16 @@ def test_a_moved_duplicate_does_not_move_the_original():
     copy = output.copy()
     bpy.context.scene.collection.objects.link(copy)
     copy.location.x = 5.0
-    bake("REFINED")
+    bake_selected("REFINED")
     assert (cube.location.x, refined("Cube").location.x) == (0.0, 0.0)
 
 
 def test_an_animated_object_stays_where_its_animation_puts_it_and_that_is_said():
-    def animate(cube):
-        cube.keyframe_insert("location", frame=1)
-
-    cube, output = baked_cube(animate)
+    cube, output = baked_cube(animated)
     output.animation_data_clear()
     output.location.x = 5.0
-    bake("REFINED")
-    (warning,) = warnings()
+    bake_selected("REFINED")
+    (warning,) = report()["warnings"]
     assert '"Cube Radiosity" was moved' in warning and "animation" in warning
     assert colours_of(refined("Cube").data)[:, 0].max() == pytest.approx(1.0)
     assert cube.location.x == 0.0
@@ -150,18 +141,17 @@ def test_a_flattened_object_that_was_not_moved_is_baked_again_without_a_word():
         cube.location, cube.scale = (5.0, 6.0, 7.0), (1.0, 1.0, 0.0)
 
     cube, _ = baked_cube(flatten)
-    bake("REFINED")
-    assert warnings() == []
+    bake_selected("REFINED")
+    assert report()["warnings"] == []
     assert tuple(cube.location) == (5.0, 6.0, 7.0)
 
 
-def test_a_moved_object_whose_bake_cannot_be_stored_is_left_alone(monkeypatch):
+def test_a_moved_object_whose_bake_cannot_be_stored_is_left_alone():
     _, output = baked_cube()
     output.location.x = 5.0
     before = file_state()
-    fail_at_the_end(monkeypatch)
-    with pytest.raises(RuntimeError, match="the disk is full"):
-        bake("ORIGINAL")
+    with full_disk():
+        bake_selected("ORIGINAL")
     assert differences(before, file_state()) == []
 
 
@@ -171,7 +161,7 @@ def test_a_moved_object_whose_bake_cannot_be_stored_is_left_alone(monkeypatch):
 
 def test_restore_brings_back_an_original_whose_refined_object_was_deleted_whatever_is_selected():
     room, lamp = add_cube("Room", select=True), add_plane("L", select=True)
-    bake("REFINED")
+    bake_selected("REFINED")
     bpy.data.objects.remove(refined("Room"))
     assert bpy.context.selected_objects == [refined("L")]
     bpy.ops.radiosity.restore()
@@ -185,7 +175,7 @@ def test_an_original_whose_refined_object_was_deleted_is_shown_by_its_next_bake(
     room.hide_viewport = False
     room.hide_set(False)
     room.select_set(True)
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     assert not room.hide_render and room.visible_get()
     bpy.ops.radiosity.restore()
     assert not room.hide_render and room.visible_get()
@@ -193,20 +183,20 @@ def test_an_original_whose_refined_object_was_deleted_is_shown_by_its_next_bake(
 
 def test_an_original_that_lights_unseen_is_said():
     add_cube("Room", select=True)
-    bake("REFINED")
+    bake_selected("REFINED")
     bpy.data.objects.remove(refined("Room"))
     add_plane(select=True)
-    bake("REFINED")
-    (warning,) = warnings()
+    bake_selected("REFINED")
+    (warning,) = report()["warnings"]
     assert '"Room" takes part in the light though its refined object was deleted' in warning
 
 
 def test_a_deleted_original_is_baked_again_with_its_own_materials():
     cube, _ = baked_cube()
     bpy.context.scene.collection.objects.unlink(cube)
-    bake("REFINED")
+    bake_selected("REFINED")
     assert sorted(obj.name for obj in bpy.data.objects) == ["Cube", "Cube Radiosity"]
-    assert warnings() == []
+    assert report()["warnings"] == []
     bpy.ops.radiosity.restore()
     assert [slot.material.name for slot in cube.material_slots] == ["Paint"]
     assert cube.visible_get()
@@ -218,7 +208,7 @@ def test_a_refined_object_without_its_original_is_an_ordinary_mesh(output):
     bpy.data.objects.remove(cube)
     before = file_state()
     for _ in range(2):
-        bake(output)
+        bake_selected(output)
     names = {"REFINED": ["Cube Radiosity", "Cube Radiosity.001"], "ORIGINAL": ["Cube Radiosity"]}
     assert sorted(obj.name for obj in bpy.data.objects) == names[output]
     bpy.ops.radiosity.restore()
@@ -231,10 +221,7 @@ def test_a_refined_object_without_its_original_is_an_ordinary_mesh(output):
 
 
 def test_restore_says_which_objects_could_not_stay_where_they_were_moved(capfd):
-    def animate(cube):
-        cube.keyframe_insert("location", frame=1)
-
-    _, output = baked_cube(animate)
+    _, output = baked_cube(animated)
     output.animation_data_clear()
     output.location.x = 5.0
     bpy.context.view_layer.update()

@@ -3,6 +3,7 @@
 """The refined output: a new object in the place of its hidden original."""
 
 import math
+from functools import partial
 
 import bpy
 import numpy as np
@@ -15,21 +16,20 @@ from tests.blender.making import (
     add_mesh,
     add_object,
     add_plane,
+    bake_selected,
     colours_of,
     corner_positions,
     diffuse_material,
     position_bake,
+    select_also,
 )
 
 pytestmark = pytest.mark.usefixtures("quick_bake")
 
 
 def bake(*objects):
-    for obj in objects:
-        obj.select_set(True)
-        bpy.context.view_layer.objects.active = obj
-    bpy.context.scene.radiosity.output = "REFINED"
-    assert bpy.ops.radiosity.bake() == {"FINISHED"}
+    select_also(*objects)
+    bake_selected("REFINED")
     return [bpy.data.objects[f"{obj.name} Radiosity"] for obj in objects]
 
 
@@ -176,11 +176,8 @@ def test_all_objects_share_one_display_material():
     assert display_of(first) == display_of(second)
 
 
-def test_values_of_the_back_are_stored_and_shown_on_the_back(monkeypatch):
-    def both_sides(scene, settings, progress):
-        return position_bake(scene, settings, progress, back=True)
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: both_sides)
+def test_values_of_the_back_are_stored_and_shown_on_the_back(run_instead):
+    run_instead(partial(position_bake, back=True))
     (output,) = bake(add_plane())
     assert colours_of(output.data, "Radiosity Back")[:, :3] == pytest.approx(-corner_positions(output), abs=1e-6)
     assert "Irradiance Back" in output.data.color_attributes
@@ -207,19 +204,12 @@ def test_baking_again_replaces_the_first_result():
     assert len(bpy.data.objects["Cube Radiosity"].data.polygons) == 24
 
 
-def test_a_baked_object_takes_part_in_the_next_bake_with_its_own_materials(monkeypatch):
+def test_a_baked_object_takes_part_in_the_next_bake_with_its_own_materials(quick_bake):
     cube, plane = add_cube(materials=[diffuse_material(colour=(0.25, 0.5, 0.75, 1.0))]), add_plane()
     bake(cube)
-    seen = []
-
-    def look(scene, settings, progress):
-        seen.append(scene)
-        return position_bake(scene, settings, progress)
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: look)
     bpy.ops.object.select_all(action="DESELECT")
     bake(plane)
-    meshes = {mesh.name: mesh for mesh in seen[0].meshes}
+    meshes = {mesh.name: mesh for mesh in quick_bake[-1][0].meshes}
     assert sorted(meshes) == ["Cube", "Plane"]
     assert not meshes["Cube"].baked
     assert meshes["Cube"].reflectance[0] == pytest.approx([0.25, 0.5, 0.75])

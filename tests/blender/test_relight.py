@@ -2,14 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The relight operator: the light that a fresh bake would give, in place, and a sentence where that cannot be."""
 
-import json
-
 import bpy
 import numpy as np
 import pytest
 import radiosity_bake
 from radiosity_bake.core.settings import BakeSettings
-from radiosity_bake.operators import bake as bake_module
 from radiosity_bake.operators import transports
 from radiosity_bake.operators.bake import RADIOSITY_OT_bake
 from radiosity_bake.operators.relight import reason_not_to_relight
@@ -17,11 +14,13 @@ from radiosity_bake.operators.relight import reason_not_to_relight
 from tests.blender.making import (
     add_cube,
     add_plane,
+    bake_selected,
     colours_of,
     diffuse_material,
     emission_material,
     node_tree,
     position_bake,
+    report,
     socket_of,
 )
 from tests.blender.state import file_state
@@ -56,16 +55,8 @@ def room():
     return {"Floor": floor, "Box": cube, "Lamp": lamp}
 
 
-def bake():
-    assert bpy.ops.radiosity.bake() == {"FINISHED"}
-
-
 def relight():
     assert bpy.ops.radiosity.relight() == {"FINISHED"}
-
-
-def report():
-    return json.loads(bpy.context.scene.radiosity.report)
 
 
 def change_the_light():
@@ -98,12 +89,12 @@ def refused(sentence):
 def test_it_gives_the_colours_of_a_fresh_bake(room, output, method):
     # Uniform, so that the fresh bake has the same vertices.
     bpy.context.scene.radiosity.output, bpy.context.scene.radiosity.method = output, method
-    bake()
+    bake_selected()
     before = shown_colours()
     change_the_light()
     relight()
     relit = shown_colours()
-    bake()
+    bake_selected()
     fresh = shown_colours()
     assert relit.keys() == fresh.keys() and len(relit) >= 6
     for key, values in fresh.items():
@@ -112,7 +103,7 @@ def test_it_gives_the_colours_of_a_fresh_bake(room, output, method):
 
 
 def test_with_the_same_colours_nothing_changes(room):
-    bake()
+    bake_selected()
     before = shown_colours()
     relight()
     after = shown_colours()
@@ -120,7 +111,7 @@ def test_with_the_same_colours_nothing_changes(room):
 
 
 def test_the_refined_objects_stay_and_show_the_new_colours(room):
-    bake()
+    bake_selected()
     names = sorted(obj.name for obj in bpy.data.objects)
     meshes = {obj.name: obj.data for obj in bpy.context.scene.objects}
     bpy.data.objects["Box Radiosity"].data.materials[0].name = "My Name For It"
@@ -134,14 +125,14 @@ def test_the_refined_objects_stay_and_show_the_new_colours(room):
 
 
 def test_what_the_artist_chose_to_see_stays_chosen(room):
-    bake()
+    bake_selected()
     bpy.data.objects["Box Radiosity"].data.color_attributes.active_color_name = "Irradiance"
     relight()
     assert bpy.data.objects["Box Radiosity"].data.color_attributes.active_color_name == "Irradiance"
 
 
 def test_a_copy_of_a_refined_object_is_lit_as_well(room):
-    bake()
+    bake_selected()
     copy = bpy.data.objects["Floor Radiosity"].copy()
     copy.data = copy.data.copy()
     bpy.context.scene.collection.objects.link(copy)
@@ -152,14 +143,14 @@ def test_a_copy_of_a_refined_object_is_lit_as_well(room):
 
 def test_restore_brings_the_originals_back_after_it(room):
     before = file_state()["objects"]
-    bake()
+    bake_selected()
     relight()
     bpy.ops.radiosity.restore()
     assert file_state()["objects"] == before
 
 
 def test_the_report_says_that_it_was_relit_without_rays(room):
-    bake()
+    bake_selected()
     baked = report()
     change_the_light()
     relight()
@@ -172,7 +163,7 @@ def test_the_report_says_that_it_was_relit_without_rays(room):
 
 
 def test_the_selection_does_not_matter(room):
-    bake()
+    bake_selected()
     for obj in bpy.context.scene.objects:
         obj.select_set(False)
     relight()
@@ -183,7 +174,7 @@ def test_a_lamp_may_go_dark_and_come_back(room):
     tree = node_tree(world)
     sky = tree.nodes.new("ShaderNodeBackground")
     tree.links.new(sky.outputs[0], tree.nodes[0].inputs["Surface"])
-    bake()
+    bake_selected()
     before = shown_colours()
     set_strength(bpy.data.materials["Shine"], 0.0)
     relight()
@@ -204,7 +195,7 @@ def test_the_button_is_grey_before_the_first_bake(room):
 
 
 def test_the_button_is_grey_in_edit_mode_and_while_a_bake_runs(room, monkeypatch):
-    bake()
+    bake_selected()
     bpy.ops.object.mode_set(mode="EDIT")
     assert reason_not_to_relight(bpy.context) == "Leave edit mode to relight"
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -215,22 +206,17 @@ def test_the_button_is_grey_in_edit_mode_and_while_a_bake_runs(room, monkeypatch
 
 def test_the_button_is_grey_when_nothing_was_kept(room):
     bpy.context.scene.radiosity.keep_transport = False
-    bake()
+    bake_selected()
     assert reason_not_to_relight(bpy.context) == "Turn on Keep for Relighting and bake again to relight"
     bpy.context.scene.radiosity.keep_transport = True
     assert "not in memory" in reason_not_to_relight(bpy.context)
 
 
 def test_the_button_is_grey_when_memory_was_too_small(room, monkeypatch):
-    def without(scene, settings, progress):
-        from radiosity_bake.core.bake import bake
-        from radiosity_bake.core.relight import size_of
+    from radiosity_bake.core.relight import size_of
 
-        monkeypatch.setattr("radiosity_bake.core.relight.size_of", lambda kept: size_of(kept) + 2**40)
-        return bake(scene, settings, progress)
-
-    monkeypatch.setattr(bake_module, "_core_bake", lambda: without)
-    bake()
+    monkeypatch.setattr("radiosity_bake.core.relight.size_of", lambda kept: size_of(kept) + 2**40)
+    bake_selected()
     assert "memory limit of 2,048 MiB" in reason_not_to_relight(bpy.context)
     refused("raise the limit and bake again")
 
@@ -238,7 +224,7 @@ def test_the_button_is_grey_when_memory_was_too_small(room, monkeypatch):
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
 def test_the_button_is_grey_once_the_originals_are_back(room, output):
     bpy.context.scene.radiosity.output = output
-    bake()
+    bake_selected()
     room["Box"].select_set(True)
     bpy.ops.object.select_all(action="DESELECT")
     shown = bpy.data.objects["Box Radiosity"] if output == "REFINED" else room["Box"]
@@ -254,31 +240,31 @@ def test_the_button_is_grey_once_the_originals_are_back(room, output):
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
 def test_an_edited_mesh_is_refused(room, output):
     bpy.context.scene.radiosity.output = output
-    bake()
+    bake_selected()
     room["Floor"].data.vertices[0].co.z = 0.1
     refused('"Floor" was changed or moved since the bake; bake again')
 
 
 def test_a_moved_object_is_refused(room):
-    bake()
+    bake_selected()
     bpy.data.objects["Box Radiosity"].location.x += 0.1
     refused('"Box" was changed or moved since the bake; bake again')
 
 
 def test_a_new_object_is_refused(room):
-    bake()
+    bake_selected()
     add_cube("Another")
     refused("added, removed or hidden since the bake")
 
 
 def test_an_edited_refined_mesh_is_refused(room):
-    bake()
+    bake_selected()
     bpy.data.objects["Box Radiosity"].data.vertices[0].co.z += 0.1
     refused('The mesh of "Box Radiosity" was edited since the bake; bake again')
 
 
 def test_a_new_lamp_is_refused(room):
-    bake()
+    bake_selected()
     room["Box"].data.materials[0] = emission_material("Glow")
     refused('"Box" gave no light where it does now')
 
@@ -286,7 +272,7 @@ def test_a_new_lamp_is_refused(room):
 @pytest.mark.parametrize(("name", "value"), [("quality", "GOOD"), ("output", "ORIGINAL"), ("seed", 3)])
 def test_other_settings_are_refused_until_they_are_set_back(room, name, value):
     settings = bpy.context.scene.radiosity
-    bake()
+    bake_selected()
     before = getattr(settings, name)
     setattr(settings, name, value)
     refused("The settings were changed since the bake")
@@ -295,14 +281,14 @@ def test_other_settings_are_refused_until_they_are_set_back(room, name, value):
 
 
 def test_settings_that_do_not_change_the_result_may_change(room):
-    bake()
+    bake_selected()
     settings = bpy.context.scene.radiosity
     settings.threads, settings.memory_limit = 1, 512
     relight()
 
 
 def test_a_failure_in_the_middle_takes_back_what_was_written(room, monkeypatch):
-    bake()
+    bake_selected()
     change_the_light()
     before = file_state()
     calls = []
@@ -330,9 +316,9 @@ def in_memory():
 
 
 def test_one_bake_at_most_is_in_memory(room):
-    bake()
+    bake_selected()
     (first,) = in_memory()
-    bake()
+    bake_selected()
     (second,) = in_memory()
     assert second is not first
     other = bpy.data.scenes.new("Other")
@@ -341,14 +327,14 @@ def test_one_bake_at_most_is_in_memory(room):
 
 
 def test_another_files_loading_lets_go_of_it(room):
-    bake()
+    bake_selected()
     assert in_memory()
     bpy.ops.wm.read_factory_settings(use_empty=True)
     assert not in_memory()
 
 
 def test_unregistering_lets_go_of_it_and_of_the_handlers(room):
-    bake()
+    bake_selected()
     handlers = len(bpy.app.handlers.undo_post), len(bpy.app.handlers.load_pre)
     radiosity_bake.unregister()
     try:
@@ -360,7 +346,7 @@ def test_unregistering_lets_go_of_it_and_of_the_handlers(room):
 
 def test_undo_takes_back_a_relight_as_one_step_and_keeps_the_transport(room):
     bpy.ops.ed.undo_push(message="Room")
-    bake()
+    bake_selected()
     bpy.ops.ed.undo_push(message="Bake")
     before = shown_colours()
     change_the_light()
@@ -376,7 +362,7 @@ def test_undo_takes_back_a_relight_as_one_step_and_keeps_the_transport(room):
 
 def test_undo_of_the_bake_lets_go_of_its_transport(room):
     bpy.ops.ed.undo_push(message="Room")
-    bake()
+    bake_selected()
     bpy.ops.ed.undo_push(message="Bake")
     assert in_memory()
     bpy.ops.ed.undo()
@@ -387,10 +373,10 @@ def test_undo_of_the_bake_lets_go_of_its_transport(room):
     assert "not in memory" in reason_not_to_relight(bpy.context)
 
 
-def test_a_bake_that_keeps_nothing_lets_go_of_the_one_before(room, monkeypatch):
-    bake()
-    monkeypatch.setattr(bake_module, "_core_bake", lambda: position_bake)
-    bake()
+def test_a_bake_that_keeps_nothing_lets_go_of_the_one_before(room, run_instead):
+    bake_selected()
+    run_instead(position_bake)
+    bake_selected()
     assert not in_memory()
 
 

@@ -11,9 +11,13 @@ from tests.blender.making import (
     add_mesh,
     add_object,
     add_plane,
+    bake_selected,
+    dark_bake,
     diffuse_material,
+    full_disk,
+    select_also,
 )
-from tests.blender.state import file_state
+from tests.blender.state import differences, file_state
 
 pytestmark = pytest.mark.usefixtures("quick_bake")
 
@@ -107,33 +111,16 @@ CASES = [
 
 
 def prepare(make):
-    objects = make()
-    for obj in objects:
-        obj.select_set(True)
-    bpy.context.view_layer.objects.active = objects[-1]
+    select_also(*make())
     add_plane("Unselected")
     return file_state()
-
-
-def bake(output):
-    bpy.context.scene.radiosity.output = output
-    assert bpy.ops.radiosity.bake() == {"FINISHED"}
-
-
-def differences(before, after, path=""):
-    if isinstance(before, dict) and isinstance(after, dict):
-        found = []
-        for key in {**before, **after}:
-            found += differences(before.get(key, "missing"), after.get(key, "missing"), f"{path}/{key}")
-        return found
-    return [] if before == after else [f"{path}: {before} became {after}"]
 
 
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
 @pytest.mark.parametrize("make", CASES)
 def test_restore_brings_everything_back(make, output):
     before = prepare(make)
-    bake(output)
+    bake_selected(output)
     assert differences(before, file_state())
     assert bpy.ops.radiosity.restore() == {"FINISHED"}
     assert differences(before, file_state()) == []
@@ -144,71 +131,46 @@ def test_restore_brings_everything_back(make, output):
 def test_restore_after_two_bakes_brings_the_originals_back(make, outputs):
     before = prepare(make)
     for output in outputs:
-        bake(output)
+        bake_selected(output)
     bpy.ops.radiosity.restore()
     assert differences(before, file_state()) == []
 
 
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
 @pytest.mark.parametrize("make", CASES)
-def test_a_bake_that_cannot_be_stored_changes_nothing(make, output, monkeypatch):
+def test_a_bake_that_cannot_be_stored_changes_nothing(make, output):
     before = prepare(make)
-    fail_at_the_end(monkeypatch)
-    with pytest.raises(RuntimeError, match="the disk is full"):
-        bake(output)
+    with full_disk():
+        bake_selected(output)
     assert differences(before, file_state()) == []
 
 
 @pytest.mark.parametrize("outputs", [(a, b) for a in ("REFINED", "ORIGINAL") for b in ("REFINED", "ORIGINAL")])
 @pytest.mark.parametrize("make", CASES)
-def test_a_second_bake_that_cannot_be_stored_leaves_the_first_whole(make, outputs, monkeypatch):
+def test_a_second_bake_that_cannot_be_stored_leaves_the_first_whole(make, outputs):
     before = prepare(make)
-    bake(outputs[0])
+    bake_selected(outputs[0])
     first = file_state()
-    with monkeypatch.context() as patch:
-        fail_at_the_end(patch)
-        with pytest.raises(RuntimeError, match="the disk is full"):
-            bake(outputs[1])
+    with full_disk():
+        bake_selected(outputs[1])
     assert differences(first, file_state()) == []
     bpy.ops.radiosity.restore()
     assert differences(before, file_state()) == []
 
 
-def fail_at_the_end(monkeypatch):
-    """Have the last thing that storing does fail, after all objects were changed."""
-    from radiosity_bake.operators import display, store
-
-    class Later(store.Journal):
-        def __exit__(self, kind, error, trace):
-            if error is not None:
-                return super().__exit__(kind, error, trace)
-            full = OSError("the disk is full")
-            super().__exit__(OSError, full, None)
-            raise full
-
-    assert display is not None
-    monkeypatch.setattr(store, "Journal", Later)
-
-
-def test_a_second_bake_that_is_cancelled_leaves_the_first_whole(monkeypatch):
-    from radiosity_bake.core.errors import NoLightError
-
+def test_a_second_bake_that_finds_no_light_leaves_the_first_whole(run_instead):
     prepare(simple)
-    bake("REFINED")
+    bake_selected("REFINED")
     first = file_state()
-
-    def dark(scene, settings, progress):
-        raise NoLightError("Nothing shines")
-
-    monkeypatch.setattr("radiosity_bake.operators.bake._core_bake", lambda: dark)
-    with pytest.raises(RuntimeError, match="Nothing shines"):
-        bake("ORIGINAL")
+    run_instead(dark_bake)
+    with pytest.raises(RuntimeError, match="Nothing in the scene emits light"):
+        bake_selected("ORIGINAL")
     assert differences(first, file_state()) == []
 
 
 def test_only_the_selected_objects_are_restored_if_any_of_them_is_baked():
     a, b = add_cube("A", select=True), add_cube("B", select=True)
-    bake("REFINED")
+    bake_selected("REFINED")
     bpy.data.objects["A Radiosity"].select_set(False)
     bpy.ops.radiosity.restore()
     assert a.radiosity.kind == "SOURCE"
@@ -219,7 +181,7 @@ def test_only_the_selected_objects_are_restored_if_any_of_them_is_baked():
 
 def test_all_are_restored_if_none_of_the_selected_is_baked():
     add_cube("A", select=True)
-    bake("REFINED")
+    bake_selected("REFINED")
     bpy.ops.object.select_all(action="DESELECT")
     add_plane(select=True)
     bpy.ops.radiosity.restore()
@@ -234,7 +196,7 @@ def test_restore_says_so_when_nothing_is_baked():
 def test_restore_survives_renamed_objects_and_materials():
     material = diffuse_material()
     cube = add_cube(materials=[material], select=True)
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     cube.name, material.name = "Renamed", "Renamed Paint"
     bpy.ops.radiosity.restore()
     assert cube.material_slots[0].material == material
@@ -242,7 +204,7 @@ def test_restore_survives_renamed_objects_and_materials():
 
 def test_restore_survives_a_deleted_refined_object():
     cube = add_cube(select=True)
-    bake("REFINED")
+    bake_selected("REFINED")
     bpy.data.objects.remove(bpy.data.objects["Cube Radiosity"])
     bpy.ops.radiosity.restore()
     assert not cube.hide_render and not cube.hide_viewport and not cube.hide_get()
@@ -250,7 +212,7 @@ def test_restore_survives_a_deleted_refined_object():
 
 def test_restore_survives_a_deleted_original():
     cube = add_cube(select=True)
-    bake("REFINED")
+    bake_selected("REFINED")
     bpy.context.scene.collection.objects.unlink(cube)
     bpy.ops.radiosity.restore()
     assert [obj.name for obj in bpy.context.scene.objects] == ["Cube"]
@@ -260,7 +222,7 @@ def test_restore_survives_a_deleted_original():
 def test_a_bake_survives_saving_and_loading(tmp_path):
     add_cube(materials=[diffuse_material("Red")], select=True)
     before = prepare(without_slots)
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     path = str(tmp_path / "baked.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
@@ -275,7 +237,7 @@ def test_a_bake_survives_saving_and_loading(tmp_path):
 
 def test_edits_of_the_mesh_after_a_bake_in_place_are_kept():
     cube = add_cube(select=True)
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     cube.data.vertices[0].co.x = -5.0
     bpy.ops.radiosity.restore()
     assert cube.data.vertices[0].co.x == -5.0
@@ -284,7 +246,7 @@ def test_edits_of_the_mesh_after_a_bake_in_place_are_kept():
 
 def test_a_material_given_after_the_bake_is_kept():
     cube = add_cube(materials=[diffuse_material("Old")], select=True)
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     new = diffuse_material("New")
     cube.material_slots[0].material = new
     bpy.ops.radiosity.restore()
@@ -295,6 +257,6 @@ def test_loose_parts_and_other_meshes_are_left_alone():
     add_mesh("Points", [(0, 0, 0)], [], select=True)
     add_cube(select=True)
     before = file_state()
-    bake("ORIGINAL")
+    bake_selected("ORIGINAL")
     bpy.ops.radiosity.restore()
     assert differences(before, file_state()) == []
