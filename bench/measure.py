@@ -25,6 +25,7 @@ from .probes import Probes, area_uniform_probes
 from .reference import Reference, converged
 from .scenes import SCENES
 from .stopwatch import Cost, timed
+from .varied_scenes import VARIED_SCENES
 
 REFERENCE_PARTS = {
     "cornell_box": 2,
@@ -76,14 +77,14 @@ class Measured:
 
 @cache
 def judged(name: str, probes: int = 4000, parts: int = 0) -> Judged:
-    """Return a scene of `SCENES` with its reference, computed once and then read from disk.
+    """Return a scene of `SCENES` or `VARIED_SCENES` with its reference, computed once and then read from disk.
 
     Parameters
     ----------
     parts : int
         Of the reference, for a noisier one than is due; 0 takes `REFERENCE_PARTS`.
     """
-    scene = SCENES[name]()
+    scene = (SCENES | VARIED_SCENES)[name]()
     points = area_uniform_probes(scene, probes)
     wanted = parts or REFERENCE_PARTS.get(name, 1)
     bright = 0 if parts else BRIGHT_PARTS.get(name, 0)

@@ -14,8 +14,11 @@ import pytest
 from radiosity_bake.core.result import BakedMesh, BakeResult
 
 from bench import form_factors, picture, stopwatch
+from bench.accuracy import Accuracy
 from bench.reference import Reference, combined
 from bench.scenes import SCENES, even_size
+from bench.survey import Finding
+from bench.varied_scenes import VARIED_SCENES
 from tests.scenes import exact
 from tools.rooms import Camera
 
@@ -122,3 +125,26 @@ def test_edges_are_drawn_where_triangles_meet():
     assert set(rows) == set(range(50))
     assert inner.sum() <= 150
     assert np.abs(rows + columns - (inner.shape[0] - 1)).max() <= 1
+
+
+@pytest.mark.parametrize("name", VARIED_SCENES)
+def test_the_shading_of_a_varied_scene_is_on_the_side_of_its_fronts(name):
+    for mesh in VARIED_SCENES[name]().meshes:
+        a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+        front = np.cross(b - a, c - a)
+        assert (np.einsum("tc,tkc->tk", front, mesh.corner_normals) > 0.0).all(), mesh.name
+
+
+@pytest.mark.parametrize(
+    ("rms", "estimate", "misses"),
+    [
+        (0.019, 0.02, ""),
+        (0.021, 0.03, "error"),
+        (0.01, 0.009, "estimate"),
+        (0.01, 0.031, "estimate"),
+        (0.03, 0.01, "error, estimate"),
+    ],
+)
+def test_a_survey_says_what_was_promised_and_not_kept(rms, estimate, misses):
+    accuracy = Accuracy(rms, rms, rms, 0.0, rms, 0.0, rms, 1, ())
+    assert Finding("GOOD", accuracy, estimate, 3, 1, 64, stopwatch.Cost(1.0, 1.0, 0.0)).misses == misses
