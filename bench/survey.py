@@ -30,7 +30,7 @@ from .varied_scenes import VARIED_SCENES
 PROBES = 2000
 
 # Noise of a reference, relative to the mean: a third of the smallest error that is asked for. Its square is taken off
-# that of the error.
+# that of the error, so for a quick look as much noise as error will do.
 MOST_NOISE = min(LARGEST_ERROR.values()) / 3.0
 
 # Paths for each point in one part of a reference, and how many parts there may be until it is below that noise.
@@ -60,7 +60,7 @@ class Finding:
         return ", ".join(found)
 
 
-def quiet(name: str, probes: int) -> Judged:
+def quiet(name: str, probes: int = PROBES, most_noise: float = MOST_NOISE) -> Judged:
     """Return a scene with a reference of as many parts as its noise asks for, or the most."""
     scene = (SCENES | VARIED_SCENES)[name]()
     points = area_uniform_probes(scene, probes)
@@ -71,10 +71,10 @@ def quiet(name: str, probes: int) -> Judged:
         parts += [irradiance(scene, *where, samples=SAMPLES, seed=k) for k in range(len(parts), wanted)]
         case = Judged(name, scene, points, combined(parts))
         noise = reference_noise(case)
-        if noise <= MOST_NOISE or wanted == MOST_PARTS:
+        if noise <= most_noise or wanted == MOST_PARTS:
             return case
         # Noise falls with the square root of the samples.
-        wanted = min(max(wanted + 1, math.ceil(wanted * (noise / MOST_NOISE) ** 2)), MOST_PARTS)
+        wanted = min(max(wanted + 1, math.ceil(wanted * (noise / most_noise) ** 2)), MOST_PARTS)
 
 
 def reference_noise(case: Judged) -> float:
@@ -129,6 +129,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--quality", action="append", choices=QUALITIES, help="default: GOOD and HIGH")
     parser.add_argument("--faces", type=int, default=4, help="of the worst ones, how many are shown")
     parser.add_argument("--probes", type=int, default=PROBES)
+    parser.add_argument("--noise", type=float, default=MOST_NOISE, help="of the references, relative to the mean")
     parser.add_argument("--references-only", action="store_true", help="compute what is missing; bake nothing")
     asked = parser.parse_args()
     for name in asked.scene:
@@ -142,7 +143,7 @@ def main() -> None:
     asked = arguments()
     print(HEADER, flush=True)
     for name in asked.scene or VARIED_SCENES:
-        case = quiet(name, asked.probes)
+        case = quiet(name, asked.probes, asked.noise)
         if asked.references_only:
             print(f"{name:<17} {case.reference.samples:,} samples, noise {reference_noise(case):.2%}", flush=True)
             continue

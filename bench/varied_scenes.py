@@ -325,6 +325,15 @@ def low_lamp() -> Scene:
     return Scene(tuple(meshes), DARKNESS)
 
 
+def flush_lamps() -> Scene:
+    """A room with lamps whose tops lie in the ceiling's plane: a panel in a housing, and a box that glows all over."""
+    meshes = list(room_walls((4.0, 3.0, 2.5), WALLS))
+    meshes.append(panel("Panel", (0.8, 0.8, 2.48), (0.8, 0.8)))
+    meshes.append(block("Box", (2.6, 1.4, 2.42), (0.6, 0.6, 0.08), reflectance=0.0, emission=0.5 * np.array(LAMP)))
+    meshes.append(block("Crate", (1.8, 1.0, 0.0), (0.7, 0.7, 0.9), degrees=35.0, reflectance=WHITE))
+    return Scene(tuple(meshes), DARKNESS)
+
+
 def shaded_lamp() -> Scene:
     """A bulb inside an open shade over a table, and a floor lamp whose shade is open above and below."""
     meshes = list(room_walls((4.0, 4.0, 2.6), WALLS))
@@ -356,7 +365,7 @@ def touching_blocks() -> Scene:
         block("Bar 3", (1.35, 2.6, 0.0), (0.3, 0.3, 1.4), reflectance=COOL),
         ball("Half Ball", (2.9, 3.2, 0.0), 0.5, levels=3, reflectance=WHITE),
         ball("Stuck Ball", (1.55, 1.3, 0.9), 0.35, levels=3, reflectance=BRIGHT),
-        panel("Lamp", (1.6, 1.4, 2.48), (0.8, 0.8)),
+        panel("Lamp", (1.6, 1.4, 2.4), (0.8, 0.8)),
     ]
     return Scene(tuple(meshes), DARKNESS)
 
@@ -504,6 +513,7 @@ VARIED_SCENES: dict[str, Callable[[], Scene]] = {
         narrow_gap,
         panel_hall,
         low_lamp,
+        flush_lamps,
         shaded_lamp,
         touching_blocks,
         tilted,
