@@ -12,9 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from radiosity_bake.core.result import BakedMesh, BakeResult
+from radiosity_bake.core.scene import Scene, surface_mesh
 
 from bench import form_factors, picture, stopwatch
 from bench.accuracy import Accuracy
+from bench.backs import back_can_be_seen
 from bench.reference import Reference, combined
 from bench.scenes import SCENES, even_size
 from bench.survey import Finding
@@ -50,6 +52,23 @@ def test_parts_of_a_reference_are_averaged_and_their_errors_too():
     # A quarter of the variance, half of the error.
     assert whole.standard_error == pytest.approx(np.full((2, 3), 0.1))
     assert (whole.samples, whole.seconds) == (64, 4.0)
+
+
+def test_the_back_of_a_lamp_shines_where_something_may_see_it():
+    floor, lamp = exact.lamp_over_floor()[0].meshes
+    ceiling = exact.rectangle("ceiling", (-1, -1, 3), (0, 2, 0), (2, 0, 0))
+    dark = np.zeros(3)
+    assert not back_can_be_seen(Scene((floor, lamp), dark), 1)
+    assert back_can_be_seen(Scene((floor, lamp, ceiling), dark), 1)
+
+
+def test_the_inside_of_a_closed_lamp_shines_where_something_is_in_it():
+    vertices, triangles = exact.icosphere(1)
+    lamp = surface_mesh("lamp", vertices, triangles, emission=exact.rgb(1.0))
+    beside = exact.rectangle("beside", (2, 0, 0), (1, 0, 0), (0, 1, 0))
+    inside = exact.rectangle("inside", (-0.1, -0.1, 0), (0.2, 0, 0), (0, 0.2, 0))
+    assert not back_can_be_seen(Scene((lamp, beside), np.zeros(3)), 0)
+    assert back_can_be_seen(Scene((lamp, inside), np.zeros(3)), 0)
 
 
 def test_an_even_subdivision_has_about_the_patches_that_were_asked_for():
