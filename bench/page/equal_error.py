@@ -21,7 +21,7 @@ def faster(scene: Document, peer: str, quality: str, clock: str) -> AtError | No
     return AtError(theirs.cost / own_cost(own, clock), theirs.kind) if theirs else None
 
 
-def surely_faster(scene: Document, peer: str, quality: str) -> float | None:
+def faster_by_both(scene: Document, peer: str, quality: str) -> float | None:
     """Return the peer's time over ours by the clock that favours us less: what a goal is judged by.
 
     Wall clock favours whoever was measured on a quiet machine, processor time whoever leaves processors idle.

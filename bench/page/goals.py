@@ -16,7 +16,7 @@ from ..methods import (
     RAY_SHARE,
 )
 from ..results import Document, of_method, own_bake, ray_share, title
-from .equal_error import COMPARED_QUALITIES, fewer_vertices, surely_faster
+from .equal_error import COMPARED_QUALITIES, faster_by_both, fewer_vertices
 from .markdown import Lines, paragraph, percent, table, times
 
 
@@ -76,7 +76,7 @@ def speed_rows(scenes: Sequence[Document]) -> list[tuple[str, str, str]]:
                 ("on the Cornell box", [s for s in scenes if s["scene"] == "cornell_box"], goal),
                 ("elsewhere", [s for s in scenes if s["scene"] != "cornell_box"], FASTER_ELSEWHERE[peer]),
             ):
-                ratios = ((s["scene"], surely_faster(s, peer, quality)) for s in chosen)
+                ratios = ((s["scene"], faster_by_both(s, peer, quality)) for s in chosen)
                 found = {scene: ratio for scene, ratio in ratios if ratio is not None}
                 name = f"{least:g} times faster than {peer} {where}, at the error of {quality}"
                 rows.append(goal_row(name, found, lambda x, g=least: x >= g, times, min))
