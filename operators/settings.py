@@ -51,7 +51,7 @@ class RadiositySettings(bpy.types.PropertyGroup):
         name="Threshold",
         description=(
             "A surface is split while it receives more than this share of the light that leaves another one. "
-            "Smaller values give more vertices and finer shadows"
+            "Smaller values give smaller patches where surfaces are near each other. Shadows follow the quality"
         ),
         default=DEFAULTS.threshold,
         min=0.000001,
@@ -85,7 +85,7 @@ class RadiositySettings(bpy.types.PropertyGroup):
     )
     quality: bpy.props.EnumProperty(
         name="Quality",
-        description="How many rays are traced for every surface and vertex",
+        description="How many rays are traced, how closely vertices follow the light, and the automatic minimum size",
         items=QUALITY_ITEMS,
         default=DEFAULTS.quality,
         options=set(),
