@@ -45,7 +45,8 @@ def introduction(document: Document) -> Lines:
             "judged: it has no error of interpolation and often fewer points to compute, which favours it. The uniform "
             "meshes of the lines *to vertices* are ours, cut where objects stand on them, which favours them too. "
             "Mitsuba's kernels are compiled, and Blender is started, before the clock runs. Our time is that of the "
-            "whole bake from arrays to arrays; where other programs' time is divided by ours, that of the whole operator."
+            "whole bake from arrays to arrays; where other programs' time is divided by ours, that of the whole "
+            "operator."
         ),
         "",
         *table(
