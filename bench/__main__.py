@@ -101,14 +101,13 @@ def affordable(case: Judged, peers: tuple[str, ...], run: str, which: str) -> It
 def measure_scene(name: str, asked: argparse.Namespace, run: str) -> None:
     """Measure everything on one scene, print it and write it as it comes."""
     case = judged(name, asked.probes, asked.parts)
-    noise = compare(case.scene, case.probes, case.reference.irradiance, case.reference).reference_noise
     about = {
         "scene": name,
         "run": run,
         "triangles": sum(len(mesh.triangles) for mesh in case.scene.meshes),
         "probes": len(case.probes),
         "reference_samples": case.reference.samples,
-        "reference_noise": noise,
+        "reference_noise": case.reference.noise,
     }
     entries: list[Entry] = []
     qualities, peers = tuple(asked.quality or QUALITIES), tuple(asked.peer or PEERS)

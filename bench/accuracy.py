@@ -185,7 +185,7 @@ def compare(scene: Scene, probes: Probes, values: Floats, reference: Reference) 
         rms=_root(squared.mean() - variance.mean()) / scale,
         rms_raw=_root(squared.mean()) / scale,
         lit_rms=_root(squared[lit].mean() - variance[lit].mean()) / float(truth[lit].mean()),
-        reference_noise=_root(variance.mean()) / scale,
+        reference_noise=reference.noise,
         luminance_rms=_root(luminance.mean() - luminance_noise.mean()) / float((truth @ LUMINANCE).mean()),
         bias=float(difference.mean()) / scale,
         p95=float(np.percentile(np.abs(difference), 95.0)) / scale,

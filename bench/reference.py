@@ -54,6 +54,11 @@ class Reference:
     samples: int
     seconds: float
 
+    @property
+    def noise(self) -> float:
+        """Standard error, root mean square over points and channels, relative to the mean."""
+        return float(np.sqrt((self.standard_error**2).mean()) / self.irradiance.mean())
+
 
 def irradiance(
     scene: Scene,

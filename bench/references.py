@@ -9,16 +9,8 @@ from __future__ import annotations
 
 import sys
 
-import numpy as np
-
 from .measure import judged
 from .scenes import SCENES
-
-
-def noise(name: str) -> float:
-    """Return the standard error of a scene's reference, root mean square over the probes and relative to the mean."""
-    reference = judged(name).reference
-    return float(np.sqrt((reference.standard_error**2).mean()) / reference.irradiance.mean())
 
 
 def main(names: list[str]) -> None:
@@ -26,8 +18,8 @@ def main(names: list[str]) -> None:
     print(f"{'scene':<18}{'samples':>9}{'seconds':>9}{'noise':>8}")
     # The furnace has no probes: every part of it emits, and its answer is known.
     for name in names or [name for name in SCENES if name != "furnace"]:
-        print(f"{name:<18}{judged(name).reference.samples:>9,}", end="", flush=True)
-        print(f"{judged(name).reference.seconds:>9.0f}{noise(name):>8.2%}", flush=True)
+        reference = judged(name).reference
+        print(f"{name:<18}{reference.samples:>9,}{reference.seconds:>9.0f}{reference.noise:>8.2%}", flush=True)
 
 
 if __name__ == "__main__":
