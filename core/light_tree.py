@@ -73,9 +73,10 @@ class LightTree:
         between a normal and the axis; largest distance of the centre from the plane of a light.
     axis : (3, nodes) float32
         Direction of the mean normal.
-    sums : (20, nodes) float32
+    sums : (26, nodes) float32
         Radius and flux again; sum of the normals, weighted by flux (3); covariance of the normals (xx, yy, zz, xy, xz,
-        yz); sum of the products of normals and places about the centre, weighted by flux (9).
+        yz); sum of the products of normals and places about the centre, weighted by flux (9); covariance of the places
+        themselves, all over the lights (6).
     """
 
     origin: Floats
@@ -157,7 +158,7 @@ def light_tree(
     )
     # The root comes second: there is no node 0.
     levels = [_level(leaf, 1 << level) for level in range(leaves.bit_length())]
-    centre, shape, axis, vector, variance, moment = (
+    centre, shape, axis, vector, variance, moment, places = (
         np.concatenate([values[0][:1], *values]) for values in zip(*levels, strict=True)
     )
     starts = [np.arange(1 << level) * leaves >> level for level in range(leaves.bit_length())]
@@ -180,7 +181,7 @@ def light_tree(
         np.ascontiguousarray(centre.T),
         by_coordinate(shape),
         by_coordinate(axis),
-        by_coordinate(np.concatenate([shape[:, :2], vector, variance, moment], axis=1)),
+        by_coordinate(np.concatenate([shape[:, :2], vector, variance, moment, places], axis=1)),
     )
 
 
@@ -201,7 +202,7 @@ class _Leaves:
 
 
 def _level(leaf: _Leaves, nodes: int) -> tuple[Floats, ...]:
-    """Centre, shape, axis, vector, variance and moment of the nodes of one level, each (nodes, ...)."""
+    """Centre, shape, axis, vector, variance, moment and places of the nodes of one level, each (nodes, ...)."""
     each = len(leaf.flux) // nodes
     real = leaf.flux > 0.0
 
@@ -229,11 +230,19 @@ def _level(leaf: _Leaves, nodes: int) -> tuple[Floats, ...]:
     sine = np.where(cosine < 0.0, 1.0, np.sqrt(np.maximum(1.0 - cosine**2, 0.0)))
     depth = largest(np.abs(np.einsum("kx,kx->k", leaf.normals, off)))
     radius = largest(np.linalg.norm(leaf.corners - own(centre)[:, None], axis=2).max(axis=1))
-    x, y, z = turn.T
-    variance = total(np.stack([x * x, y * y, z * z, x * y, x * z, y * z], axis=1)) * share
+    variance = total(_products(turn)) * share
+    # A triangle reaches as far as its middle and, about that, a twelfth of its corners together (variances).
+    within = leaf.corners - place[:, None]
+    places = total(_products(off) + _products(within).sum(axis=1) / 12.0) * share
     moment = total((leaf.normals[:, :, None] * off[:, None, :]).reshape(-1, 9))
     shape = np.stack([radius, flux, cosine, sine, depth], axis=1)
-    return centre, shape, axis, vector, variance, moment
+    return centre, shape, axis, vector, variance, moment, places
+
+
+def _products(vectors: Floats) -> Floats:
+    """Products of the components of vectors (..., 3) with each other: xx, yy, zz, xy, xz, yz, (..., 6)."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    return np.stack([x * x, y * y, z * z, x * y, x * z, y * z], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -342,12 +351,14 @@ def _light(sums: Singles, way: Singles, normals: Singles) -> Singles:
     """What receivers get of nodes unoccluded, in luminance, (m,).
 
     With a light's normal n_e and its place c + d about the node's centre, and w = c - x, each light gives
-    f (n_e . (x - c - d)) (n . (c + d - x)) / (pi |c + d - x|^4); the sum over lights is taken to the first order in d.
-    Where some lights may be turned away, or be below the horizon, it is that of evenly spread cosines and heights.
+    f (n_e . (x - c - d)) (n . (c + d - x)) / (pi |c + d - x|^4); the sum over lights is taken to the second order in d,
+    whose second moments are taken to be the same for all normals. Their part is negative on average in a closed room,
+    and bounces would add up what leaving it out is off by. Where some lights may be turned away, or be below the
+    horizon, it is that of evenly spread cosines and heights.
 
     Parameters
     ----------
-    sums : (20, m) float32
+    sums : (26, m) float32
         Those of the nodes.
     way, normals : (3, m) float32
         From receivers to the nodes' centres, and the receivers' normals.
@@ -355,7 +366,7 @@ def _light(sums: Singles, way: Singles, normals: Singles) -> Singles:
     x, y, z = way
     nx, ny, nz = normals
     radius, flux, vx, vy, vz, xx, yy, zz, xy, xz, yz = sums[:11]
-    t = sums[11:]
+    t, c = sums[11:20], sums[20:]
     square = np.maximum(x * x + y * y + z * z, TINY)
     height = x * nx + y * ny + z * nz
     variance = x * x * xx + y * y * yy + z * z * zz + 2.0 * (x * (y * xy + z * xz) + y * z * yz)
@@ -365,8 +376,15 @@ def _light(sums: Singles, way: Singles, normals: Singles) -> Singles:
     tx, ty, tz = (x * t[k] + y * t[3 + k] + z * t[6 + k] for k in range(3))
     first_order = height * (4.0 * (tx * x + ty * y + tz * z) / square - (t[0] + t[4] + t[8]))
     first_order -= tx * nx + ty * ny + tz * nz
+    # The covariance of the places times the way: how much they reach along it, and across.
+    cx, cy, cz = x * c[0] + y * c[3] + z * c[4], x * c[3] + y * c[1] + z * c[5], x * c[4] + y * c[5] + z * c[2]
+    along = (cx * x + cy * y + cz * z) / square
+    bent = nx * (vx * c[0] + vy * c[3] + vz * c[4]) + ny * (vx * c[3] + vy * c[1] + vz * c[5])
+    bent += nz * (vx * c[4] + vy * c[5] + vz * c[2])
+    turned = facing * (nx * cx + ny * cy + nz * cz) - height * (vx * cx + vy * cy + vz * cz)
+    second_order = (height * facing * (12.0 * along - 2.0 * (c[0] + c[1] + c[2])) - 4.0 * turned) / square - bent
     near = radius * radius > LARGEST_ANGLE**2 * square
-    light += first_order * ((facing > width) & (height > margin) & ~near)
+    light += (first_order + second_order) * ((facing > width) & (height > margin) & ~near)
     # Close by, the light is limited as by a disk of the node's size.
     limited = np.where(near, square + radius * radius, square)
     result: Singles = np.maximum(light, 0.0) / (np.float32(np.pi) * limited * limited)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Many emitters: what is put together is right to a fraction of a percent, and costs no more for more of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from radiosity_bake.core import many_lights
@@ -13,7 +15,7 @@ from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.surfaces import join
 from radiosity_bake.core.visibility import RayScene
 
-from tests.core.building import DARK
+from tests.core.building import DARK, dense
 from tests.scenes import exact
 
 FLOOR = exact.rectangle("floor", (-3, -3, 0), (6, 0, 0), (0, 6, 0))
@@ -91,6 +93,20 @@ def test_a_cut_of_the_tree_holds_the_light_of_all_to_a_fraction_of_a_percent(lev
     # Far below what rays leave: a bake at HIGH may be off by 1%.
     assert np.sqrt(np.mean(error**2)) < 4e-3
     assert abs(error.mean()) < 2e-3
+
+
+def test_the_walls_of_a_glowing_room_get_the_light_of_all_walls():
+    # What a formula of points is off by has one sign in a closed room, and bounces add it up.
+    surfaces = join(dense(exact.furnace(0.5, size=(1.0, 1.5, 0.8))[0], 4))
+    rays = RayScene(surfaces.points, surfaces.triangles, 2)
+    emitters = all_emitters(surfaces, lit_sides(surfaces, rays, 0), rays, 0)
+    emitters = replace(emitters, enclosed=np.zeros_like(emitters.enclosed))
+    chosen = np.arange(0, len(surfaces.triangles), 6)
+    points = surfaces.points[surfaces.triangles[chosen]].mean(axis=1)
+    found, _ = cut_light(emitters, points, surfaces.normals[chosen])
+    error = found / (surfaces.emission[0] @ LUMINANCE) - 1.0
+    assert abs(error.mean()) < 5e-4
+    assert np.sqrt(np.mean(error**2)) < 1e-3
 
 
 def test_what_a_receiver_costs_hardly_grows_with_the_number_of_lights():
