@@ -140,7 +140,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     rays_of_rows = rays.rays - walked
 
     clock.start("Solving", 0.4, 0.5)
-    transport.lengthen_buried(clock.report)
+    transport.lengthen_few(clock.report)
     cover = transport.separate_cover(clock.report)
     shares = transport.shares()
     emitters = all_emitters(surfaces, lit, rays, settings.seed)

@@ -22,6 +22,12 @@ from .transport import Transport, sample_points
 POINTS_PER_PATCH = 4
 """Points of a patch at which direct light is computed for the transport."""
 
+MORE_POINTS = 16
+"""Points of the patches that get much of the emitters' light: a lamp close to a wall lights few, and they the rest."""
+
+MUCH_LIGHT = 1.0 / 1024.0
+"""Share of what all patches get of the emitters from which on it is much."""
+
 SHADOW_RAYS_PER_POINT = 8
 """Shadow rays of each of them: 32 a patch, and the gather averages over hundreds of patches."""
 
@@ -136,22 +142,25 @@ def left_emission(surfaces: Surfaces, emitters: Emitters) -> Floats:
 def direct_on_patches(
     transport: Transport, cover: Cover, balance: Balance, emitters: Emitters, report: Callable[[float], None]
 ) -> DirectLight:
-    """What each element gets of the emitters, in the mean over a few points, of m receivers."""
+    """What each element gets of the emitters, in the mean over a few points, of m receivers.
+
+    Which patches get more points is told by the rays that left them. Chosen by what the few points say, a patch whose
+    points all miss the light would keep its darkness, and one whose points meet it would lose its own.
+    """
     count = len(balance.elements)
     number = np.full(cover.first_twin + len(cover.element), -1, dtype=np.int64)
     number[balance.elements] = np.arange(count)
     whole = np.flatnonzero((balance.elements == balance.base) & (cover.twin[balance.base] < 0))
-    elements = balance.elements[whole]
-    points, normals = sample_points(transport.surfaces, transport.tree, elements, POINTS_PER_PATCH, transport.seed + 51)
-    partly = balance.buried[whole] > 0.0
-    points, normals = points.copy(), normals.copy()
-    points[partly], normals[partly] = transport.open_points(elements[partly], POINTS_PER_PATCH)
-    at_points = _direct_at(transport, emitters, elements, points, normals, report)
-    direct = [at_points.weighted(1.0 / POINTS_PER_PATCH).renumbered(np.repeat(whole, POINTS_PER_PATCH), count)]
+    power = balance.areas * balance.exchange.apply(balance.emission).sum(axis=1)
+    much = power[whole] > MUCH_LIGHT * power.sum()
+    direct = []
+    for rows, points in ((whole[~much], POINTS_PER_PATCH), (whole[much], MORE_POINTS)):
+        at_points = _direct_on(transport, balance, emitters, rows, points, report)
+        direct.append(at_points.weighted(1.0 / points).renumbered(np.repeat(rows, points), count))
     if len(cover.element):
         at_points = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
-        for rows, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
-            receiver = np.where(chosen, number[rows][:, None], -1)
+        for covered, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
+            receiver = np.where(chosen, number[covered][:, None], -1)
             share = chosen / chosen.sum(axis=1)[:, None]
             direct.append(at_points.weighted(share.ravel()).renumbered(receiver.ravel(), count))
     return DirectLight.joined(direct)
@@ -168,6 +177,24 @@ def unreflected_light(balance: Balance, direct: DirectLight, emitters: Emitters,
     left = left_emission(surfaces, emitters)
     by_rays = balance.exchange.apply(balance.means.of(left))
     return direct.irradiance(emitters.radiance) + by_rays + balance.escape[:, None] * surfaces.world
+
+
+def _direct_on(
+    transport: Transport,
+    balance: Balance,
+    emitters: Emitters,
+    rows: Ints,
+    count: int,
+    report: Callable[[float], None],
+) -> DirectLight:
+    """Direct light at so many points of elements, of which `rows` (k,) of the balance are asked: k * count receivers.
+
+    No point is inside a solid.
+    """
+    elements, partly = balance.elements[rows], balance.buried[rows] > 0.0
+    points, normals = sample_points(transport.surfaces, transport.tree, elements, count, transport.seed + 51)
+    points[partly], normals[partly] = transport.open_points(elements[partly], count)
+    return _direct_at(transport, emitters, elements, points, normals, report)
 
 
 def _direct_at(

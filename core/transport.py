@@ -30,6 +30,10 @@ corner of a room three quarters."""
 LONG_ROW = 4
 """Times more rays that an element is given when most of its first ones started inside a solid."""
 
+LARGE_SHARE = 1.0 / 256.0
+"""Share of the light emitted by all that makes an element one of the few that send out much of it: how much of that
+leaves an open scene is told by their rows alone."""
+
 LEAKING = 0.01
 """Share of the rays inside a closed shell that may slip out along its edges."""
 
@@ -258,12 +262,24 @@ class Transport:
         corners = self.tree.points[self.tree.corners[sources >> 1]]
         return point_to_triangle(points, normals, corners[:, None]).mean(axis=1)
 
-    def lengthen_buried(self, report: Callable[[float], None] = lambda share: None) -> None:
-        """Trace more rays for elements most of whose rays started inside a solid: those left are too few to tell."""
+    def lengthen_few(self, report: Callable[[float], None] = lambda share: None) -> None:
+        """Trace more rays for elements whose rays are too few to tell.
+
+        They are those most of whose rays started inside a solid, and those that send out much of all light.
+        """
         table = self.tables[0]
         few = (table.valid > 0) & (2 * table.valid < table.hits.shape[1])
+        few |= self._emitted_share(table.element) > LARGE_SHARE
         if few.any():
             self.lengthen(np.sort(table.element[few]), report)
+
+    def _emitted_share(self, elements: Ints) -> Floats:
+        """Share of the light emitted by all of some elements that each of them emits, (m,)."""
+        node = elements >> 1
+        # The triangles of a cluster emit alike.
+        power = self.surfaces.emission[self.tree.triangle[node]].sum(axis=1) * self.tree.areas(node)
+        share: Floats = power / max(power.sum(), np.finfo(np.float64).tiny)
+        return share
 
     def open_points(self, elements: Ints, count: int) -> tuple[Floats, Floats]:
         """Points of elements from which a ray left that did not start inside a solid, and normals, (m, count, 3)."""

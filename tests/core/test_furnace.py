@@ -9,7 +9,7 @@ from radiosity_bake.core.errors import UnsolvableError
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
 
-from tests.core.building import flipped, mean_over
+from tests.core.building import cornell_box, flipped, mean_over, room_with_block
 from tests.scenes import exact
 
 SETTINGS = BakeSettings(quality="DRAFT", minimum_size=0.3)
@@ -84,6 +84,15 @@ def test_the_energy_that_comes_in_goes_somewhere(room_good):
     energy = room_good.report["energy"]
     assert abs(energy["imbalance"]) < 0.01
     assert energy["emitted"] == pytest.approx(energy["absorbed"] + energy["escaped"], rel=0.01)
+
+
+@pytest.mark.parametrize("scene", [cornell_box, room_with_block])
+def test_a_few_patches_at_a_lamp_do_not_decide_how_much_energy_there_is(scene):
+    # Most of the light of the one leaves it, straight from its lamp; much of the other's goes to the ceiling 5 cm
+    # above. Over seeds the balance is off by 0.3% at DRAFT: 3 sigma.
+    for seed in range(4):
+        settings = BakeSettings(quality="DRAFT", output="ORIGINAL", seed=seed)
+        assert abs(bake(scene(), settings).report["energy"]["imbalance"]) < 0.01
 
 
 def test_the_energy_emitted_is_that_of_the_lamps(room_draft):
