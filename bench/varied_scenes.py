@@ -139,7 +139,7 @@ def globe(name: str, centre: ArrayLike, radius: float, power: float = 1.0, level
 
 
 def bedroom() -> Scene:
-    """A bedroom of 4 x 4.5 x 2.6 m: bed, pillows, wardrobe, desk, chair, a rug 1 cm thick, a globe for a lamp."""
+    """A bedroom of 4 x 4.5 x 2.6 m: bed, pillows, wardrobe, desk, chair, a rug 1 cm thick, a lamp on a rod."""
     meshes = list(room_walls((4.0, 4.5, 2.6), WALLS))
     meshes += [
         block("Bed Frame", (0.0, 1.2, 0.1), (2.1, 1.6, 0.22), reflectance=WOOD),
@@ -153,8 +153,8 @@ def bedroom() -> Scene:
         block("Rug", (2.2, 1.0, 0.0), (1.4, 2.2, 0.01), degrees=8.0, reflectance=RED),
         block("Night Stand", (0.0, 0.6, 0.0), (0.4, 0.45, 0.5), reflectance=WHITE),
         block("Picture", (1.0, 0.0, 1.4), (0.8, 0.02, 0.6), reflectance=BLUE),
-        cylinder("Rod", (2.0, 2.2, 2.3), 0.01, 0.3, segments=8, reflectance=DARK),
-        globe("Globe", (2.0, 2.2, 2.2), 0.12),
+        cylinder("Rod", (2.0, 2.2, 2.22), 0.01, 0.38, segments=8, reflectance=DARK),
+        panel("Lamp", (1.75, 1.95, 2.2), (0.5, 0.5)),
     ]
     meshes += table("Desk", (3.2, 0.3), (0.7, 1.3), 0.74, 0.05)
     meshes += table("Chair", (2.6, 0.6), (0.42, 0.42), 0.45, 0.03)
