@@ -402,7 +402,7 @@ def chequered() -> Scene:
     """A room whose floor and wall alternate between reflectances of 0.1 and 0.9, and a mesh of many materials."""
     meshes = list(room_walls((4.0, 4.0, 2.5), ((0.1,) * 3, BRIGHT, (0.9, 0.1, 0.1), (0.1, 0.1, 0.9), DARK, BRIGHT)))
     meshes[0] = chequered_sheet("Floor", (0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0), 8)
-    meshes[5] = chequered_sheet("North", (0.0, 4.0, 0.0), (0.0, 0.0, 2.5), (4.0, 0.0, 0.0), 5)
+    meshes[5] = chequered_sheet("North", (0.0, 4.0, 0.0), (4.0, 0.0, 0.0), (0.0, 0.0, 2.5), 5)
     for k in range(4):
         size = (0.5, 0.5, 0.4 + 0.3 * k)
         colour = exact.rgb(0.1 + 0.8 * k / 3)
