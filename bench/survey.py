@@ -70,16 +70,11 @@ def quiet(name: str, probes: int = PROBES, most_noise: float = MOST_NOISE) -> Ju
     while True:
         parts += [irradiance(scene, *where, samples=SAMPLES, seed=k) for k in range(len(parts), wanted)]
         case = Judged(name, scene, points, combined(parts))
-        noise = reference_noise(case)
+        noise = case.reference.noise
         if noise <= most_noise or wanted == MOST_PARTS:
             return case
         # Noise falls with the square root of the samples.
         wanted = min(max(wanted + 1, math.ceil(wanted * (noise / most_noise) ** 2)), MOST_PARTS)
-
-
-def reference_noise(case: Judged) -> float:
-    """Return the standard error of the reference, root mean square over the probes and relative to the mean."""
-    return compare(case.scene, case.probes, case.reference.irradiance, case.reference).reference_noise
 
 
 def survey(case: Judged, quality: str) -> Finding:
@@ -145,7 +140,7 @@ def main() -> None:
     for name in asked.scene or VARIED_SCENES:
         case = quiet(name, asked.probes, asked.noise)
         if asked.references_only:
-            print(f"{name:<17} {case.reference.samples:,} samples, noise {reference_noise(case):.2%}", flush=True)
+            print(f"{name:<17} {case.reference.samples:,} samples, noise {case.reference.noise:.2%}", flush=True)
             continue
         for quality in asked.quality or LARGEST_ERROR:
             found = survey(case, quality)
