@@ -166,9 +166,13 @@ class _ShownFaces:
         new &= ~self._changed_shells
         if new.any():
             more = self._first.part(new[self._shell_of_node[self._first.faces.node]])
-            every = np.ones(len(self._changed.faces.triangle), dtype=bool)
-            self._changed = self._changed.with_others(every, more, self.tree)
             self._changed_shells |= new
+            (first, kept), (changed, every) = self.parts()
+            # Of a dense mesh that has changed, what its rays met is not kept twice.
+            if 2 * np.count_nonzero(kept) < len(kept):
+                self._first = first.part(kept)
+            del first
+            self._changed = changed.with_others(every, more, self.tree)
         self.tree.split(nodes)
         faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
         self._changed = _updated(self._surfaces, self._sides, faces, self._gather_at, self._changed)
@@ -176,7 +180,7 @@ class _ShownFaces:
     def all(self) -> Lit:
         """The faces and their light."""
         (first, kept), (changed, _) = self.parts()
-        return first if kept.all() else first.with_others(kept, changed, self.tree)
+        return first.with_others(kept, changed, self.tree) if self._changed_shells.any() else first
 
 
 def _nodes_with_crooked_cuts(

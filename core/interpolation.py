@@ -26,6 +26,9 @@ patch's own radiosity: what was gathered at three points says less of its mean t
 MOST_CORRECTED = 0.1
 """Share by which the light at the vertices is made to agree with the patches' power at most."""
 
+ROWS_AT_ONCE = 2**14
+"""Receivers whose rays are looked through at once."""
+
 
 class PlacesOnFaces:
     """Where the places that rays met lie on the faces: all of the interpolation that does not depend on light.
@@ -46,7 +49,10 @@ class PlacesOnFaces:
         count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
         seen = np.zeros(count, dtype=bool)
-        seen[met[met >= 0]] = True
+        # As indices, places take twice the memory, which is that of all gather rays: some at a time.
+        for first in range(0, len(met), ROWS_AT_ONCE):
+            some = met[first : first + ROWS_AT_ONCE]
+            seen[some[some >= 0]] = True
         seen[cells.copied] |= seen[count - len(cells.copied) :]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)
         cell = self.place >> 1

@@ -90,17 +90,18 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     """
     corners, points = faces.corners[face_of_side], faces.points
     shading = side_normals(faces.corner_normals(surfaces)[face_of_side].reshape(-1, 3), np.repeat(side, 3))
-    place = faces.places[corners].ravel()
-    cells = np.rint(shading * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS
-    span = 2 * NORMAL_CELLS + 1
-    key = place * span**3 + (cells[:, 0] * span + cells[:, 1]) * span + cells[:, 2]
-    codes, first, group = np.unique(key, return_index=True, return_inverse=True)
+    codes, first, group = np.unique(
+        _codes(faces.places[corners].ravel(), shading), return_index=True, return_inverse=True
+    )
     count = len(first)
 
     def mean(values: Floats) -> Floats:
         total = np.stack([np.bincount(group, weights=values[:, k], minlength=count) for k in range(3)], axis=1)
         return total / np.bincount(group, minlength=count)[:, None]
 
+    normals = normalized(mean(shading))
+    # Of a dense mesh these are large, and what follows takes as much again.
+    del shading
     geometric = side_normals(surfaces.normals[faces.triangle[face_of_side]], side)
     lift = normalized(mean(np.repeat(geometric, 3, axis=0)))
     position = points[corners.ravel()[first]]
@@ -110,13 +111,22 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     size = largest_edges(points, corners)
     return Receivers(
         position + INWARD * inward,
-        normalized(mean(shading)),
+        normals,
         lift,
         codes,
         INWARD * inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         group.reshape(-1, 3),
     )
+
+
+def _codes(places: Ints, shading: Floats) -> Ints:
+    """Numbers that are equal for the same place and about the same shading normal, (c,)."""
+    span = 2 * NORMAL_CELLS + 1
+    codes = places
+    for coordinate in shading.T:
+        codes = codes * span + (np.rint(coordinate * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS)
+    return codes
 
 
 def _into_a_face(toward: Floats, mean: Floats, group: Ints, count: int) -> Floats:
