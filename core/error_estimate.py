@@ -40,7 +40,8 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
 
     Where a smooth function is interpolated, the gradient jumps across an edge by about its second derivative times the
     distance h of the faces' middles, and the error in between is h^2 / 8 times that derivative (Zienkiewicz & Zhu 1987
-    estimate the same from the recovered gradient).
+    estimate the same from the recovered gradient). For h stands the edge's length, between one and two altitudes on it
+    as in a right isosceles triangle: slender faces reach far from their short edges, and not from their long ones.
 
     Parameters
     ----------
@@ -60,7 +61,9 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     jump = lengths(gradient[first] - gradient[second])
     along = order[pair]
     length = lengths(corners[first, (along + 1) % 3] - corners[first, along % 3])
-    missed = jump * length / 8.0
+    area = triangle_areas(corners)
+    altitude = np.divide(area[first] + area[second], length, out=np.zeros(len(pair)), where=length > 0.0)
+    missed = jump * np.clip(length, altitude, 2.0 * altitude) / 8.0
     square = np.zeros(len(corners))
     for side in (first, second):
         np.maximum.at(square, side, missed**2)
