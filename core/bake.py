@@ -125,10 +125,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
 
     clock.start("Coarse patches", 0.02, 0.03)
-    smallest = settings.minimum_size or automatic_size(surfaces, effort)
+    smallest, finest = minimum_sizes(surfaces, settings, effort)
     automatic = not settings.minimum_size and settings.method == "ADAPTIVE"
-    finest = finest_size(surfaces, effort) if automatic else smallest
-    finest_cut = finest / FINER_CUTS if automatic else smallest
+    finest_cut = finest / FINER_CUTS if automatic else finest
     tree = clustered_patches(surfaces, min(smallest, automatic_size(surfaces, effort)))
     most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
     per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
@@ -211,6 +210,22 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     return replace(
         result, kept=keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, story))
     )
+
+
+def minimum_sizes(surfaces: Surfaces, settings: BakeSettings, effort: Effort) -> tuple[float, float]:
+    """The minimum sizes of patches and of faces, scene units.
+
+    A size that was asked for is that of the smallest there are. What rays see is interpolated between the vertices, so
+    where faces are split by the light on them, patches are not made smaller than the quality wants them.
+    """
+    automatic, asked = automatic_size(surfaces, effort), settings.minimum_size
+    if settings.method == "UNIFORM":
+        return asked or automatic, asked or automatic
+    if not asked:
+        return automatic, finest_size(surfaces, effort)
+    if settings.output == "ORIGINAL":
+        return asked, asked
+    return max(asked, automatic), asked
 
 
 def automatic_size(surfaces: Surfaces, effort: Effort) -> float:

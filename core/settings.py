@@ -27,10 +27,11 @@ class BakeSettings:
         A fragment is split while it receives more than this share of the energy that leaves some other fragment
         (Kulyasov & Nikulin 2010, step 4); 0 < threshold <= 1.
     minimum_size : float
-        Length n in scene units: only fragments whose longest edge is m = 2n or more are split, so that no split makes
-        a longest edge shorter than n. Faces are cut further only to fit together, and where another object hides part
-        of them. 0 chooses it from the scene's size and the quality, and lets faces (not patches) become finer where
-        light changes fast.
+        Length n in scene units: only what has a longest edge of m = 2n or more is split, so that no split makes a
+        longest edge shorter than n. Faces are cut further only to fit together, and where another object hides part of
+        them. Where the light decides which faces are split (adaptive, refined meshes), the patches that exchange it are
+        no smaller than the automatic ones. 0 chooses it from the scene's size and the quality, and lets faces (not
+        patches) become finer where light changes fast.
     method : str
         `'ADAPTIVE'` splits by form factors; `'UNIFORM'` splits everything down to the minimum size.
     quality : str

@@ -351,6 +351,34 @@ def test_no_fragment_has_an_edge_below_half_the_minimum_size():
         assert longest[whole].min() >= 0.3 / np.sqrt(2.0) - 1e-9
 
 
+def test_a_minimum_size_that_is_asked_for_is_that_of_faces_and_patches_are_no_smaller_than_the_automatic_ones():
+    size = 0.05
+    automatic = bake(room_with_block(), BakeSettings(quality="DRAFT")).report["minimum_size"]
+    adaptive = bake(room_with_block(), BakeSettings(quality="DRAFT", minimum_size=size))
+    uniform = bake(room_with_block(), BakeSettings(quality="DRAFT", minimum_size=size, method="UNIFORM"))
+    assert adaptive.report["minimum_face_size"] == uniform.report["minimum_face_size"] == size
+    assert adaptive.report["minimum_size"] == automatic > size
+    assert uniform.report["minimum_size"] == size
+    assert adaptive.report["patches"] < 0.5 * uniform.report["patches"]
+    assert adaptive.report["vertices"] < 0.5 * uniform.report["vertices"]
+    for mesh in adaptive.meshes:
+        corners = mesh.vertices[mesh.triangles]
+        longest = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+        # As above: what cuts have not moved is a fragment or half of one.
+        whole = np.isclose(mesh.barycentric * 2.0**8, np.rint(mesh.barycentric * 2.0**8)).all(axis=(1, 2))
+        assert longest[whole].min() >= size / np.sqrt(2.0) - 1e-9
+
+
+def test_on_original_meshes_the_minimum_size_is_that_of_patches():
+    settings = BakeSettings(quality="DRAFT", minimum_size=0.05, output="ORIGINAL")
+    assert bake(room_with_block(), settings).report["minimum_size"] == 0.05
+
+
+def test_a_minimum_size_above_the_automatic_one_is_that_of_patches_and_faces():
+    report = bake(room_with_block(), BakeSettings(quality="DRAFT", minimum_size=0.4)).report
+    assert (report["minimum_size"], report["minimum_face_size"]) == (0.4, 0.4)
+
+
 # ---------------------------------------------------------------------------------------------------------- memory
 
 
