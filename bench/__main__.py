@@ -38,10 +38,10 @@ Entry = dict[str, Any]
 
 
 def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
-    """Yield our bakes: each quality as a user has it; uniform, and by the paper's rule alone, at several sizes.
+    """Yield our bakes: each quality as a user has it; uniform, and by the paper's rule, at several sizes.
 
-    With a minimum size given, no face is made finer than it: form factors decide, and the light only where they left
-    faces of twice the size.
+    With a minimum size given, no face is made finer than it: form factors decide down to the automatic size, and the
+    light where they left faces of twice the size.
     """
     measure(case, BakeSettings(quality="DRAFT"))  # the first bake of a process also pays for loading libraries
     whole = operator_costs(case, qualities)

@@ -112,7 +112,11 @@ def operator_costs(case: Judged, qualities: Sequence[str]) -> dict[str, dict[str
 def measure(case: Judged, settings: BakeSettings) -> Measured:
     """Bake, and compare."""
     result, cost = timed(lambda: bake(case.scene, settings))
-    values = irradiance_at_probes(result, case.probes)
     # What is kept for relighting would fill the memory with every measurement.
-    result = replace(result, kept=None)
+    return judge(case, replace(result, kept=None), cost)
+
+
+def judge(case: Judged, result: BakeResult, cost: Cost) -> Measured:
+    """Compare a bake with the reference."""
+    values = irradiance_at_probes(result, case.probes)
     return Measured(cost, result.report, compare(case.scene, case.probes, values, case.reference), result)
