@@ -34,8 +34,11 @@ PLACES_ALONG_CUT = (0.15, 0.5, 0.85)
 DISTANCE_FROM_CUT = 0.08
 """Where a cut is checked: shares of its length, and the distance from it as a share of the face's width."""
 
-LEAST_PIECE = 0.02
+LEAST_PIECE = 0.004
 """Share of the edge that a cut keeps from its ends, so that no sliver is left."""
+
+
+TINY = np.finfo(np.float64).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +55,8 @@ class CutEdges:
         Where the edge stops being seen, 0 at the start.
     share : (k,) float
         Where it is cut: there, unless that is too close to an end.
+    border : (k,) bool
+        Whether the surface ends at the edge: light is gathered beside it, off the plane of the next wall.
     """
 
     start: Ints
@@ -60,6 +65,7 @@ class CutEdges:
     hidden: Ints
     change: Floats
     share: Floats
+    border: NDArray[np.bool_]
 
 
 IsHidden = Callable[[Receivers], NDArray[np.bool_]]
@@ -104,21 +110,22 @@ def find_cuts(
         ],
         axis=1,
     )
-    start, end, seen, unseen = np.unique(pairs, axis=0).T
+    edges, faces_beside = np.unique(pairs, axis=0, return_counts=True)
+    (start, end, seen, unseen), border = edges.T, faces_beside == 1
     count = len(start)
     low, width = np.zeros(count), 1.0
     inner = np.arange(1, SECTIONS) / SECTIONS
     for _ in range(searches if count else 0):
         share = (low[:, None] + width * inner).ravel()
         each = np.repeat(np.arange(count), SECTIONS - 1)
-        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share)
+        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share, border[each])
         inside = is_hidden(_along(faces, places, tried, share)).reshape(count, SECTIONS - 1)
         # The first section whose end is hidden; the last one's end is known to be.
         first = np.where(inside.any(axis=1), inside.argmax(axis=1), SECTIONS - 1)
         low, width = low + first * width / SECTIONS, width / SECTIONS
     high = low + width
     change = (low + high) / 2.0
-    return CutEdges(start, end, seen, unseen, change, np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE))
+    return CutEdges(start, end, seen, unseen, change, np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE), border)
 
 
 def crooked_faces(
@@ -198,9 +205,12 @@ def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Re
     def mixed(values: Floats) -> Floats:
         return values[cuts.seen] * (1.0 - t) + values[cuts.hidden] * t
 
-    inward = mixed(places.inward)
+    # Aside only: along the edge it would move the place that is asked about.
+    start, way = faces.points[cuts.start], faces.points[cuts.end] - faces.points[cuts.start]
+    ahead = np.einsum("kx,kx->k", mixed(places.inward), way) / np.maximum(np.einsum("kx,kx->k", way, way), TINY)
+    inward = np.where(cuts.border[:, None], mixed(places.inward) - ahead[:, None] * way, 0.0)
     return Receivers(
-        points=faces.points[cuts.start] * (1.0 - t) + faces.points[cuts.end] * t + inward,
+        points=start + way * t + inward,
         normals=normalized(mixed(places.normals)),
         lift=normalized(mixed(places.lift)),
         codes=places.codes[cuts.seen],
@@ -311,8 +321,12 @@ def cut_faces(
         return np.concatenate([at_corners, at_corners * (1.0 - t) + np.roll(at_corners, -1, axis=1) * t], axis=1)
 
     unseen = hidden[of_corner]
-    # A piece lies on the side of the corners it has; one between three cuts has none and counts as seen.
-    piece_hidden: NDArray[np.bool_] = np.any((piece < 3) & unseen[row, np.minimum(piece, 2)], axis=1)
+    # A piece lies on the side of the corners it has. One between three cuts has none: two of these are on the edges of
+    # the corner that is alone on its side, and it lies beyond them, on the side of the other two.
+    own_corner = piece < 3
+    piece_hidden: NDArray[np.bool_] = np.any(own_corner & unseen[row, np.minimum(piece, 2)], axis=1)
+    without = ~own_corner.any(axis=1)
+    piece_hidden[without] = unseen[member[without]].sum(axis=1) >= 2
     front = interpolated(values[:count], on_face.share)
     own = on_face.own >= 0
     sides = []

@@ -9,9 +9,11 @@ under the block receives nothing.
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.cutting import LEAST_PIECE, SEARCHES, SECTIONS
+from radiosity_bake.core.cutting import LEAST_PIECE, SEARCHES, SECTIONS, CutEdges, cut_faces, find_cuts
+from radiosity_bake.core.receivers import Receivers
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.core.subdivision import Faces
 
 from tests.core.building import areas, block, crosses, t_junctions
 from tests.scenes import exact, oracle
@@ -157,3 +159,47 @@ def test_a_patch_that_two_blocks_share_is_cut_by_both():
     dark = (mesh.irradiance[..., 0] == 0).all(axis=1)
     # What is dark has the area of the two feet, but for their corners, which a cut through a triangle rounds off.
     assert areas(corners)[dark].sum() == pytest.approx(2 * 0.3 * 1.0, rel=0.05)
+
+
+def test_beyond_two_cuts_is_the_side_of_the_two_other_corners():
+    # Corner 0 of the first triangle is seen, 1 and 2 are hidden. Across the edge 1-2, on another surface, 2 is seen,
+    # so that the edge is cut for that one's sake, and the first triangle falls into four pieces.
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
+    triangles, of_corner = np.array([[0, 1, 2], [2, 1, 3]]), np.array([[0, 1, 2], [3, 4, 5]])
+    number = np.arange(4)
+    faces = Faces(points, number, 0 * number, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
+    hidden = np.array([False, True, True, False, True, True])
+    at = np.zeros((6, 3))
+    places = Receivers(at, at, at, np.arange(6), at, np.ones(6), of_corner)
+    start, end, seen, unseen = np.array([[0, 1, 0, 1], [0, 2, 0, 2], [2, 1, 3, 4], [2, 3, 3, 5]]).T
+    half = np.full(4, 0.5)
+    cuts = CutEdges(start, end, seen, unseen, half, half, np.zeros(4, dtype=bool))
+    bright, dark = np.ones((4, 3)), np.zeros((4, 3))
+    values = np.where(hidden[of_corner], 0.0, 1.0)[..., None].repeat(3, axis=2)
+    cut, face, light = cut_faces(faces, np.arange(2), places, hidden, cuts, values, bright, dark)
+    lit = (light == 1.0).all(axis=(1, 2))
+    assert (light[~lit] == 0.0).all()
+    size = areas(cut.points[cut.corners[face]])
+    for triangle in (0, 1):
+        own = cut.triangle[face] == triangle
+        assert size[own & lit].sum() == pytest.approx(0.5 / 4)
+        assert size[own].sum() == pytest.approx(0.5)
+
+
+def test_a_vertex_that_gathers_aside_does_not_move_the_cut():
+    # Uneven faces around a vertex make its light be gathered a little into one of them; the outline stays where it is.
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    triangles = np.array([[0, 1, 2], [0, 2, 3]])
+    number = np.arange(4)
+    faces = Faces(points, number, 0 * number, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
+    up, inward = np.tile(UP, (4, 1)), np.zeros((4, 3))
+    inward[2] = (-0.05, -0.04, 0.0)
+    places = Receivers(points + inward, up, up, number, inward, np.ones(4), triangles)
+    hidden = np.array([False, False, True, True])
+    cuts = find_cuts(faces, places, hidden, lambda where: where.points[:, 1] > 0.6)
+    inner = ~cuts.border
+    assert inner.sum() == 1
+    assert (cuts.start[inner], cuts.end[inner]) == (0, 2)
+    assert cuts.change[inner] == pytest.approx(0.6, abs=SECTIONS**-SEARCHES)
+    # On the border it is gathered beside the edge, but no further along it.
+    assert cuts.change[~cuts.border | (cuts.end == 2)] == pytest.approx(0.6, abs=0.04 + SECTIONS**-SEARCHES)
