@@ -27,8 +27,12 @@ SECTIONS = 8
 SEARCHES, ROUGH_SEARCHES = 3, 2
 """Times that the piece found is searched again: the cut is found to a 1/512 of the edge, or to 1/64 of it."""
 
-MARGIN = 0.004
-"""Share of the edge that receivers keep from the cut, on both sides: a few times what the bisection leaves open."""
+BEFORE_CUT = 0.75
+"""Share of the way from the seen end to the cut at which light is gathered, to be drawn on in a straight line to the cut:
+right at the foot of an object is a contact shadow often narrower than the face, which would darken all of it."""
+
+BEYOND_CUT = 0.004
+"""Share of the edge beyond the cut at which the hidden side is gathered: a few times what the search leaves open."""
 
 PLACES_ALONG_CUT = (0.15, 0.5, 0.85)
 DISTANCE_FROM_CUT = 0.08
@@ -193,9 +197,14 @@ def _within(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights:
 
 
 def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Receivers, Receivers]:
-    """Receivers on the seen and on the hidden side of each cut."""
-    before = _along(faces, places, cuts, np.maximum(cuts.change - MARGIN, 0.0))
-    return before, _along(faces, places, cuts, np.minimum(cuts.change + MARGIN, 1.0))
+    """Receivers before each cut, for `drawn_to_cut`, and just beyond it."""
+    before = _along(faces, places, cuts, BEFORE_CUT * cuts.change)
+    return before, _along(faces, places, cuts, np.minimum(cuts.change + BEYOND_CUT, 1.0))
+
+
+def drawn_to_cut(at_corner: Floats, before_cut: Floats) -> Floats:
+    """Light at cuts, (k, 3), from that at their seen ends and at `BEFORE_CUT` of the way."""
+    return np.maximum(at_corner + (before_cut - at_corner) / BEFORE_CUT, 0.0)
 
 
 def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Receivers:

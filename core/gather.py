@@ -26,8 +26,9 @@ from .workers import Workers
 LEAST_COVERED_SHARE = 0.9
 """A receiver is covered when more of its rays than this end within `COVER_GAP` of its faces' size."""
 
-LEAST_VALID_SHARE = 0.5
-"""A receiver is buried when fewer of its rays than this left it outside a solid; from an outside point all do."""
+LEAST_VALID_SHARE = 0.9
+"""A receiver is buried when fewer of its rays than this left it outside a solid; from an outside point all do. Inside a
+cupboard that stands against a wall, many rays seem to: they meet the wall where it lies in the plane of the back."""
 
 FLAT = 1e-5
 """Difference between the shading normal and the surface's own below which no ray starts under the surface."""

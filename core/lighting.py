@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .balance import Balance, check_solved, energy, left_emission, seen_radiance, unreflected_light
 from .cells import Cells, Radiance
 from .clock import Clock
-from .cutting import CutEdges, cut_faces
+from .cutting import CutEdges, cut_faces, drawn_to_cut
 from .direct import Emitters
 from .direct_light import DirectLight
 from .errors import NoLightError
@@ -81,7 +81,7 @@ class PatchLight:
 
 @dataclass(frozen=True, eq=False)
 class TracedCuts:
-    """Edges of faces that are cut, and the light gathered on the two sides of each cut.
+    """Edges of faces that are cut, and the light gathered before and beyond each cut.
 
     Attributes
     ----------
@@ -217,7 +217,8 @@ def _cut(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]:
     count, gathered = len(shown.faces.triangle), shown.gathered
     fronts = gathered.irradiance[shown.places.of_corner[:count]]
     values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
-    sides = cuts.seen.irradiance, cuts.hidden.irradiance
+    seen = drawn_to_cut(gathered.irradiance[cuts.edges.seen], cuts.seen.irradiance)
+    sides = seen, cuts.hidden.irradiance
     return cut_faces(shown.faces, shown.face, shown.places, gathered.hidden, cuts.edges, values, *sides)
 
 
