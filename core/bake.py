@@ -16,7 +16,7 @@ from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import cut_receivers, find_cuts
-from .detail import FaceSizes, Sides, light_up, light_up_in_detail
+from .detail import FaceSizes, light_up, light_up_in_detail
 from .direct import all_emitters
 from .gather import Gathered, GatherRays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
@@ -153,7 +153,6 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         cover,
         COVER_GAP * rays.scale * finest,
     )
-    sides = Sides(lit, transport.enclosed_shells())
     patches = TracedPatches(len(tree), balance, emitters, direct, cells)
     light = light_of_patches(patches, surfaces)
     traced = rays.rays
@@ -171,12 +170,12 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
 
     cuts, on_faces = None, None
     if settings.output == "ORIGINAL":
-        shown = light_up(surfaces, sides, input_faces(surfaces), gather_at)
+        shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
-        shown, leaves = light_up_in_detail(surfaces, sides, tree, sizes, effort.tolerance, gather_at, is_hidden)
+        shown, leaves = light_up_in_detail(surfaces, lit, tree, sizes, effort.tolerance, gather_at, is_hidden)
         if shown.gathered.places.shape[1]:
-            aside = transport.is_aside(sides.enclosed)[cover.base_of(cells.element)]
+            aside = transport.is_aside()[cover.base_of(cells.element)]
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)

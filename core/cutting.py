@@ -28,8 +28,8 @@ SEARCHES, ROUGH_SEARCHES = 3, 2
 """Times that the piece found is searched again: the cut is found to a 1/512 of the edge, or to 1/64 of it."""
 
 BEFORE_CUT = 0.75
-"""Share of the way from the seen end to the cut at which light is gathered, to be drawn on in a straight line to the cut:
-right at the foot of an object is a contact shadow often narrower than the face, which would darken all of it."""
+"""Share of the way from the seen end to the cut at which light is gathered, to be drawn on in a straight line: right at
+the foot of an object is a contact shadow that is often narrower than the face, and would darken all of it."""
 
 BEYOND_CUT = 0.004
 """Share of the edge beyond the cut at which the hidden side is gathered: a few times what the search leaves open."""

@@ -49,35 +49,19 @@ class FaceSizes:
     most_vertices: int
 
 
-@dataclass(frozen=True, eq=False)
-class Sides:
-    """What is known of the sides of shells.
-
-    Attributes
-    ----------
-    lit : (shells, 2) bool
-        Front and back: whether light reaches them.
-    enclosed : (shells,) bool
-        Closed shells whose insides see nothing else, and whose fronts are seen.
-    """
-
-    lit: NDArray[np.bool_]
-    enclosed: NDArray[np.bool_]
-
-
 GatherAt = Callable[[Receivers], Gathered]
 
 
-def light_up(surfaces: Surfaces, sides: Sides, faces: Faces, gather_at: GatherAt) -> Lit:
+def light_up(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, gather_at: GatherAt) -> Lit:
     """Gather light at all corners of faces as they are."""
-    face, side, enclosed = _wanted_sides(faces, surfaces, sides)
+    face, side = _wanted_sides(faces, surfaces, lit)
     places = receivers(surfaces, faces, face, side)
-    return Lit(faces, face, side, enclosed, places, gather_at(places))
+    return Lit(faces, face, side, places, gather_at(places))
 
 
 def light_up_in_detail(
     surfaces: Surfaces,
-    sides: Sides,
+    lit: NDArray[np.bool_],
     tree: PatchTree,
     sizes: FaceSizes,
     tolerance: float,
@@ -88,7 +72,8 @@ def light_up_in_detail(
 
     Parameters
     ----------
-    sides : Sides
+    lit : (shells, 2) bool
+        Front and back: whether light reaches them.
     tree : PatchTree
         The patches to begin with; not changed.
     sizes : FaceSizes
@@ -101,7 +86,7 @@ def light_up_in_detail(
     -------
     The faces and their light, and the tree whose leaves they lie in.
     """
-    shown = _ShownFaces(surfaces, sides, tree.copy(), gather_at)
+    shown = _ShownFaces(surfaces, lit, tree.copy(), gather_at)
 
     def split_by_error(first_new: int) -> Ints:
         return _nodes_to_split(shown.missed_light(), shown.tree, sizes.smallest, tolerance)
@@ -135,11 +120,11 @@ class _ShownFaces:
     tree : PatchTree
     """
 
-    def __init__(self, surfaces: Surfaces, sides: Sides, tree: PatchTree, gather_at: GatherAt) -> None:
-        self._surfaces, self._sides, self.tree, self._gather_at = surfaces, sides, tree, gather_at
-        self._changed_shells = np.zeros(len(sides.lit), dtype=bool)
+    def __init__(self, surfaces: Surfaces, lit: NDArray[np.bool_], tree: PatchTree, gather_at: GatherAt) -> None:
+        self._surfaces, self._lit, self.tree, self._gather_at = surfaces, lit, tree, gather_at
+        self._changed_shells = np.zeros(len(lit), dtype=bool)
         faces = conforming_faces(surfaces, tree, ~self._changed_shells)
-        self._first = light_up(surfaces, sides, faces, gather_at)
+        self._first = light_up(surfaces, lit, faces, gather_at)
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
         self._missed = _missed_light(surfaces, self._first, len(tree))
         self._shell_of_node = surfaces.shell_of_triangle[tree.triangle]
@@ -175,7 +160,7 @@ class _ShownFaces:
             self._changed = changed.with_others(every, more, self.tree)
         self.tree.split(nodes)
         faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
-        self._changed = _updated(self._surfaces, self._sides, faces, self._gather_at, self._changed)
+        self._changed = _updated(self._surfaces, self._lit, faces, self._gather_at, self._changed)
 
     def all(self) -> Lit:
         """The faces and their light."""
@@ -193,25 +178,25 @@ def _nodes_with_crooked_cuts(
     return nodes[tree.sizes(nodes) >= 2.0 * sizes.smallest_cut]
 
 
-def _wanted_sides(faces: Faces, surfaces: Surfaces, sides: Sides) -> tuple[Ints, Ints, NDArray[np.bool_]]:
-    """Faces and sides that get values, every front and the backs that light reaches, and which are enclosed; (f,)."""
+def _wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Faces and sides that get values, every front and the backs that light reaches, (f,)."""
     count = len(faces.triangle)
     shell = surfaces.shell_of_triangle[faces.triangle]
-    behind = np.flatnonzero(sides.lit[shell, 1])
+    behind = np.flatnonzero(lit[shell, 1])
     face = np.concatenate([np.arange(count), behind])
     side = np.concatenate([np.zeros(count, dtype=np.int64), np.ones(len(behind), dtype=np.int64)])
-    return face, side, (side == 1) & sides.enclosed[shell[face]]
+    return face, side
 
 
-def _updated(surfaces: Surfaces, sides: Sides, faces: Faces, gather_at: GatherAt, known: Lit) -> Lit:
+def _updated(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, gather_at: GatherAt, known: Lit) -> Lit:
     """Gather at the receivers that `known` has not, and take the others from it."""
-    face, side, enclosed = _wanted_sides(faces, surfaces, sides)
+    face, side = _wanted_sides(faces, surfaces, lit)
     places = receivers(surfaces, faces, face, side)
     old = known.places
     place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
     missing = np.flatnonzero(old.codes[place] != places.codes)
     new = gather_at(places.taken(missing))
-    return Lit(faces, face, side, enclosed, places, known.gathered.with_more(place, new, missing))
+    return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing))
 
 
 def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:

@@ -63,7 +63,10 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     length = lengths(corners[first, (along + 1) % 3] - corners[first, along % 3])
     area = triangle_areas(corners)
     altitude = np.divide(area[first] + area[second], length, out=np.zeros(len(pair)), where=length > 0.0)
-    missed = jump * np.clip(length, altitude, 2.0 * altitude) / 8.0
+    # Around a thin rod gradients turn with the surface: no more is missed than half of what the values span.
+    low, high = values.min(axis=1), values.max(axis=1)
+    span = np.maximum(high[first], high[second]) - np.minimum(low[first], low[second])
+    missed = np.minimum(jump * np.clip(length, altitude, 2.0 * altitude) / 8.0, span / 2.0)
     square = np.zeros(len(corners))
     for side in (first, second):
         np.maximum.at(square, side, missed**2)

@@ -41,7 +41,7 @@ class PlacesOnFaces:
         What rays met: other places need no radiance.
     aside : (places,) bool
         Places that say nothing of the power that the vertices' light should have: on elements that are covered or
-        inside a solid in part, whose radiosity is that of the rest, and on enclosed ones.
+        inside a solid in part, whose radiosity is that of the rest.
     """
 
     def __init__(self, cells: Cells, tree: PatchTree, met: NDArray[np.int32], aside: NDArray[np.bool_]) -> None:

@@ -27,8 +27,6 @@ class Lit:
     faces : Faces
     face, side : (f,) int
         Faces and sides (1: the back) with values: all fronts in order, then some backs.
-    enclosed : (f,) bool
-        Those inside a closed mesh that see nothing but the same inside: what glows there is not looked at closely.
     places : Receivers
         `of_corner` has a row for each face side.
     gathered : Gathered
@@ -38,7 +36,6 @@ class Lit:
     faces: Faces
     face: Ints
     side: Ints
-    enclosed: NDArray[np.bool_]
     places: Receivers
     gathered: Gathered
 
@@ -47,10 +44,10 @@ class Lit:
         return corner_values(self.gathered, self.places.of_corner)
 
     def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
-        """Face sides whose error counts: neither emitters nor enclosed, nor hidden altogether, (f,)."""
+        """Face sides whose error counts: neither emitters nor hidden altogether, (f,)."""
         dark = np.all(surfaces.emission[self.faces.triangle[self.face]] == 0.0, axis=1)
         shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
-        return dark & shown & ~self.enclosed
+        return dark & shown
 
     def error(self, surfaces: Surfaces) -> float:
         """Estimated RMS error over the surface, relative to its mean."""
@@ -67,7 +64,6 @@ class Lit:
             self.faces.taken(np.flatnonzero(kept)),
             (np.cumsum(kept) - 1)[self.face[rows]],
             self.side[rows],
-            self.enclosed[rows],
             replace(self.places.taken(receivers), of_corner=of_corner.reshape(-1, 3)),
             self.gathered.taken(receivers),
         )
@@ -94,7 +90,6 @@ class Lit:
             self.faces.taken(own).joined(others.faces, tree).taken(order),
             face[sorted_sides],
             side[sorted_sides],
-            np.concatenate([self.enclosed[rows], others.enclosed])[sorted_sides],
             replace(self.places.joined(others.places, receivers), of_corner=place[of_corner[sorted_sides]]),
             self.gathered.joined(others.gathered, receivers),
         )

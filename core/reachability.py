@@ -31,6 +31,9 @@ LEAST_VISITS = 3
 LEAST_SHARE = 0.01
 """Share of the visits to be expected by its area, and of those to its front, that the back of a lit shell must get."""
 
+MOST_HOLDING = 1000
+"""Of the shells that emit, so many of the largest are asked whether they hold another; smaller ones are lamps."""
+
 EXPECTED_VISITS = 20.0
 """Visits to be expected by its area without which an unvisited side of a shell means nothing."""
 
@@ -38,7 +41,11 @@ EXPECTED_VISITS = 20.0
 def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_]:
     """Whether light reaches the front and the back of each shell, (shells, 2) bool."""
     shells = len(surfaces.closed)
-    visits = _visits(surfaces, rays, _from_emitters(surfaces, rays, seed), seed)
+    lamp, inside = _lamps(surfaces), _insides(surfaces)
+    walks = _from_emitters(surfaces, rays, seed)
+    left = surfaces.shell_of_triangle[walks.triangle]
+    outward = np.flatnonzero(~lamp[left] | (walks.back != inside[left]))
+    visits = _visits(surfaces, rays, walks.taken(outward), seed)
     if surfaces.world.any():
         visits += _visits(surfaces, rays, _from_world(surfaces, rays, seed), seed + 7)
     area = np.bincount(surfaces.shell_of_triangle, weights=surfaces.areas, minlength=shells)
@@ -53,6 +60,7 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     emits = np.bincount(surfaces.shell_of_triangle, weights=surfaces.emission.any(axis=1), minlength=shells) > 0
     lit[emits, 0] = True
     lit[emits & ~surfaces.closed, 1] = True
+    lit[np.flatnonzero(lamp), inside[lamp]] = False
     # A shell that no light reaches at all shows its front, black.
     lit[~lit.any(axis=1), 0] = True
     return lit
@@ -73,6 +81,10 @@ class Walks:
     back: NDArray[np.bool_]
     origin: Floats
     direction: Floats
+
+    def taken(self, which: Ints) -> Walks:
+        """Some of the walks."""
+        return Walks(self.triangle[which], self.back[which], self.origin[which], self.direction[which])
 
 
 def _visits(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int) -> Floats:
@@ -139,6 +151,41 @@ def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
     dark = np.bincount(surfaces.shell_of_triangle, weights=~emits, minlength=len(surfaces.closed))
     result: NDArray[np.bool_] = surfaces.closed & (dark == 0)
     return result
+
+
+def _lamps(surfaces: Surfaces) -> NDArray[np.bool_]:
+    """Closed shells that emit somewhere and hold nothing, (shells,): what glows inside, nobody sees.
+
+    Both sides of an emitter glow, so the inside of a lamp's housing would be the brightest place of a room; where the
+    housing lies flush in a ceiling it would light the ceiling's other side. A room that emits holds other shells, or is
+    the largest shell there is.
+    """
+    shell, count = surfaces.shell_of_triangle, len(surfaces.closed)
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    corners = surfaces.points[surfaces.triangles]
+    np.minimum.at(low, shell, corners.min(axis=1))
+    np.maximum.at(high, shell, corners.max(axis=1))
+    extent = (high - low).max(axis=1)
+    emits = np.bincount(shell, weights=surfaces.emission.any(axis=1), minlength=count) > 0
+    lamp: NDArray[np.bool_] = surfaces.closed & emits & (extent < extent.max())
+    # Of the shells that begin between the two ends of a lamp along x, those that end there too in all directions.
+    order = np.argsort(low[:, 0], kind="stable")
+    largest = np.flatnonzero(lamp)
+    largest = largest[np.argsort(-extent[largest], kind="stable")[:MOST_HOLDING]]
+    first = np.searchsorted(low[order, 0], low[:, 0], side="left")
+    last = np.searchsorted(low[order, 0], high[:, 0], side="right")
+    for candidate in largest:
+        near = order[first[candidate] : last[candidate]]
+        inside = (low[near] > low[candidate]).all(axis=1) & (high[near] < high[candidate]).all(axis=1)
+        lamp[candidate] = not inside.any()
+    return lamp
+
+
+def _insides(surfaces: Surfaces) -> Ints:
+    """The side of each shell that is the inside where it is closed: 1, the back, unless its normals look inward."""
+    corners = surfaces.points[surfaces.triangles] - surfaces.points[surfaces.triangles[0, 0]]
+    volume = np.einsum("tx,tx->t", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    return (np.bincount(surfaces.shell_of_triangle, weights=volume, minlength=len(surfaces.closed)) >= 0.0).astype(int)
 
 
 def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:

@@ -34,9 +34,6 @@ LARGE_SHARE = 1.0 / 256.0
 """Share of the light emitted by all that makes an element one of the few that send out much of it: how much of that
 leaves an open scene is told by their rows alone."""
 
-LEAKING = 0.01
-"""Share of the rays inside a closed shell that may slip out along its edges."""
-
 POINTS_OF_A_FACTOR = 4
 """Points of a receiver over which a form factor in closed form is averaged."""
 
@@ -341,37 +338,11 @@ class Transport:
         parts = self.rays.workers.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
         return np.concatenate([np.zeros((0, COVER_POINTS), dtype=bool), *parts])
 
-    def enclosed_shells(self) -> NDArray[np.bool_]:
-        """Closed shells whose insides see nothing but themselves, while others see their fronts, (shells,).
-
-        The housing of a lamp is one: emitters glow on both sides, and nobody will ever look.
-        """
-        surfaces, tree = self.surfaces, self.tree
-        side = 2 * np.repeat(surfaces.shell_of_triangle[tree.triangle], 2) + np.arange(2 * len(tree)) % 2
-        twins = np.zeros(0, dtype=np.int64) if self.cover is None else side[self.cover.element]
-        # The last two places take the hits that are no elements.
-        nothing = 2 * len(surfaces.closed)
-        side = np.concatenate([side, twins, [nothing, nothing]]).astype(np.int32)
-        outward, all_rays = np.zeros(nothing + 1), np.zeros(nothing + 1)
-        seen = np.zeros(nothing + 1, dtype=bool)
-        for table in self.tables:
-            met, own = side[table.hits], side[table.element]
-            other = (met != own[:, None]) & (table.hits != BURIED)
-            outward += np.bincount(own, weights=other.sum(axis=1), minlength=nothing + 1)
-            all_rays += np.bincount(own, weights=table.valid, minlength=nothing + 1)
-            seen[met[other]] = True
-        looks_out = outward > LEAKING * all_rays
-        return surfaces.closed & ~looks_out[1:nothing:2] & seen[:nothing:2]
-
-    def is_aside(self, enclosed: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Elements whose light tells nothing of what is around them, (2 * nodes,).
-
-        They are partly inside a solid, are covered in part, or are the insides of the `enclosed` shells (shells,).
-        """
+    def is_aside(self) -> NDArray[np.bool_]:
+        """Elements that are partly inside a solid or covered, whose light is that of their rest, (2 * nodes,)."""
         aside = self.buried_share() > 0.0
         if self.cover is not None:
             aside |= self.cover.twin >= 0
-        aside[1::2] |= enclosed[self.surfaces.shell_of_triangle[self.tree.triangle]]
         return aside
 
     def shares(self) -> Shares:

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which sides light reaches: rooms from inside, solids, sheets, whatever way their normals point."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from radiosity_bake.core.reachability import lit_sides
@@ -72,6 +74,26 @@ def test_a_bulb_emits_outward_alone():
     sides = lit(ROOM, bulb)
     assert sides["bulb"] == (True, False)
     assert sides["room"] == (True, False)
+
+
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_a_lamp_in_a_housing_is_dark_inside_even_where_it_cuts_the_ceiling(turned_over):
+    housing = block("housing", (0.7, 0.7, 1.9), (1.3, 1.3, 2.1), reflectance=0.5)
+    emission = np.where(housing.corner_normals[:, 0, 2:] < -0.5, 5.0, 0.0).repeat(3, axis=1)
+    housing = surface_mesh("housing", housing.vertices, housing.triangles, reflectance=0.5, emission=emission)
+    sides = lit(ROOM, flipped(housing) if turned_over else housing)
+    assert sides["housing"] == ((False, True) if turned_over else (True, False))
+    assert sides["room"] == (True, False)
+
+
+def test_a_room_that_glows_itself_is_lit_inside():
+    glowing = replace(ROOM, emission=np.ones_like(ROOM.emission) * (np.arange(len(ROOM.emission)) < 2)[:, None])
+    assert lit(glowing)["room"] == (True, False)
+    outward = flipped(glowing)
+    assert lit(outward, block("block", (0.5, 0.5, 0.2), (1, 1, 0.8)))["room"][1]
+    # The floor around the house is larger, but the house holds something.
+    floor = exact.rectangle("ground", (-5, -5, -1), (10, 0, 0), (0, 10, 0), reflectance=0.5)
+    assert lit(outward, block("block", (0.5, 0.5, 0.2), (1, 1, 0.8)), floor)["room"][1]
 
 
 def test_the_world_lights_a_solid_outside_and_an_open_plane_on_both_sides():
