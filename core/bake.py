@@ -173,7 +173,16 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
-        shown, leaves = light_up_in_detail(surfaces, lit, tree, sizes, effort.tolerance, gather_at, is_hidden)
+        shown, leaves = light_up_in_detail(
+            surfaces,
+            lit,
+            tree,
+            transport.is_aside().reshape(-1, 2).any(axis=1),
+            sizes,
+            effort.tolerance,
+            gather_at,
+            is_hidden,
+        )
         if shown.gathered.places.shape[1]:
             aside = transport.is_aside()[cover.base_of(cells.element)]
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)

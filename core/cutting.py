@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from . import templates
 from .geometry import normalized
 from .receivers import Receivers
+from .sampling import sequence, triangle_weights
 from .scene import Floats, Ints
 from .subdivision import Faces
 
@@ -26,6 +27,9 @@ SECTIONS = 8
 
 SEARCHES, ROUGH_SEARCHES = 3, 2
 """Times that the piece found is searched again: the cut is found to a 1/512 of the edge, or to 1/64 of it."""
+
+PLACES_FOR_FEET = 32
+"""Places of a face that are asked for a foot between its corners."""
 
 BEFORE_CUT = 0.75
 """Share of the way from the seen end to the cut at which light is gathered, to be drawn on in a straight line: right at
@@ -165,6 +169,15 @@ def crooked_faces(
     weights, at = np.concatenate(tests), np.concatenate(member)
     wrong = is_hidden(_within(faces, face[at], places, corners[at], weights)) != np.concatenate(expected)
     return np.unique(face[at[wrong]])
+
+
+def faces_with_feet(faces: Faces, places: Receivers, among: Ints, is_hidden: IsHidden) -> Ints:
+    """Those of the faces `among` that hide some place between their corners: the foot of a leg stands on them."""
+    weights = triangle_weights(sequence(0, PLACES_FOR_FEET, 2))
+    shares = np.concatenate([1.0 - weights.sum(axis=1, keepdims=True), weights], axis=1)
+    face = np.repeat(among, len(shares))
+    inside = _within(faces, face, places, places.of_corner[face], np.tile(shares, (len(among), 1)))
+    return among[is_hidden(inside).reshape(-1, len(shares)).any(axis=1)]
 
 
 def _cut_weights(faces: Faces, face: Ints, edge: Ints, own: Ints, cuts: CutEdges) -> Floats:

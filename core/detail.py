@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, find_cuts
+from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error
 from .gather import Gathered
@@ -63,6 +63,7 @@ def light_up_in_detail(
     surfaces: Surfaces,
     lit: NDArray[np.bool_],
     tree: PatchTree,
+    partly: NDArray[np.bool_],
     sizes: FaceSizes,
     tolerance: float,
     gather_at: GatherAt,
@@ -76,6 +77,8 @@ def light_up_in_detail(
         Front and back: whether light reaches them.
     tree : PatchTree
         The patches to begin with; not changed.
+    partly : (nodes,) bool
+        Patches some rays of which started inside a solid or under a cover.
     sizes : FaceSizes
     tolerance : float
         RMS error over the surface to be reached, relative to the mean.
@@ -88,6 +91,20 @@ def light_up_in_detail(
     """
     shown = _ShownFaces(surfaces, lit, tree.copy(), gather_at)
 
+    # What was split for its neighbours' sake is asked like the patches that it was part of.
+    doubtful = np.concatenate([partly, np.ones(len(shown.tree) - len(partly), dtype=bool)])
+
+    def split_by_feet(first_new: int) -> Ints:
+        nodes = [np.zeros(0, dtype=np.int64)]
+        for lit, chosen in shown.parts():
+            count = len(chosen)
+            node = lit.faces.node
+            new = doubtful[shown.tree.patch[node]] if first_new == 0 else node >= first_new
+            seen = ~lit.gathered.hidden[lit.places.of_corner[:count]].any(axis=1)
+            faces = np.flatnonzero(chosen & new & seen & (shown.tree.sizes(node) >= 2.0 * sizes.smallest_cut))
+            nodes.append(node[faces_with_feet(lit.faces, lit.places, faces, is_hidden)])
+        return np.unique(np.concatenate(nodes))
+
     def split_by_error(first_new: int) -> Ints:
         return _nodes_to_split(shown.missed_light(), shown.tree, sizes.smallest, tolerance)
 
@@ -99,7 +116,7 @@ def light_up_in_detail(
                 nodes.append(_nodes_with_crooked_cuts(lit, faces, shown.tree, sizes, is_hidden))
         return np.sort(np.concatenate(nodes))
 
-    for nodes_to_split in (split_by_error, split_by_outline):
+    for nodes_to_split in (split_by_feet, split_by_error, split_by_outline):
         first_new = 0
         for _ in range(MOST_ROUNDS):
             nodes = nodes_to_split(first_new)
