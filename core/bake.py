@@ -18,7 +18,7 @@ from .clock import Clock
 from .cutting import cut_receivers, find_cuts
 from .detail import FaceSizes, light_up, light_up_in_detail
 from .direct import all_emitters
-from .gather import Gathered, GatherRays, gather, hidden_receivers
+from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
 from .patches import clustered_patches
@@ -57,9 +57,9 @@ class Effort:
 
 
 EFFORTS = {
-    "DRAFT": Effort(2_000, 32, 0.04, GatherRays(64, 16, 32, 64, 0.06)),
-    "GOOD": Effort(4_000, 64, 0.012, GatherRays(256, 64, 128, 256, 0.01)),
-    "HIGH": Effort(16_000, 128, 0.005, GatherRays(768, 128, 256, 512, 0.005)),
+    "DRAFT": Effort(2_000, 32, 0.04, GatherRays(64, 0.05, 16, 32, 64, 0.06)),
+    "GOOD": Effort(4_000, 64, 0.012, GatherRays(256, 0.016, 64, 128, 256, 0.01)),
+    "HIGH": Effort(16_000, 128, 0.005, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
 }
 
 BYTES_PER_VERTEX = 4096
@@ -162,15 +162,23 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
     most_kept = settings.memory_limit * 2**20 // (2 * BYTES_PER_PLACE)
 
+    per_receiver = effort.gather
+
     def gather_at(places: Receivers) -> Gathered:
-        return gather(transport, cells, radiance, emitters, places, effort.gather, finest, most_kept, gathering)
+        return gather(transport, cells, radiance, emitters, places, per_receiver, finest, most_kept, gathering)
+
+    def gather_first(places: Receivers) -> Gathered:
+        nonlocal per_receiver
+        found = gather_at(places)
+        per_receiver = enough_rays(per_receiver, found, places, most_kept)
+        return found if per_receiver is effort.gather else gather_at(places)
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
     cuts, on_faces = None, None
     if settings.output == "ORIGINAL":
-        shown = light_up(surfaces, lit, input_faces(surfaces), gather_at)
+        shown = light_up(surfaces, lit, input_faces(surfaces), gather_first)
     else:
         sizes = FaceSizes(finest, finest_cut, most_vertices)
         shown, leaves = light_up_in_detail(
@@ -180,6 +188,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             transport.is_aside().reshape(-1, 2).any(axis=1),
             sizes,
             effort.tolerance,
+            gather_first,
             gather_at,
             is_hidden,
         )

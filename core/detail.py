@@ -66,6 +66,7 @@ def light_up_in_detail(
     partly: NDArray[np.bool_],
     sizes: FaceSizes,
     tolerance: float,
+    gather_first: GatherAt,
     gather_at: GatherAt,
     is_hidden: IsHidden,
 ) -> tuple[Lit, PatchTree]:
@@ -82,6 +83,8 @@ def light_up_in_detail(
     sizes : FaceSizes
     tolerance : float
         RMS error over the surface to be reached, relative to the mean.
+    gather_first, gather_at : callable
+        Gather light at the corners of the patches, and at all vertices after them.
     is_hidden : callable
         Tells whether receivers are hidden: faces that another object hides in part are split where it has a corner.
 
@@ -89,7 +92,7 @@ def light_up_in_detail(
     -------
     The faces and their light, and the tree whose leaves they lie in.
     """
-    shown = _ShownFaces(surfaces, lit, tree.copy(), gather_at)
+    shown = _ShownFaces(surfaces, lit, tree.copy(), gather_first, gather_at)
 
     # What was split for its neighbours' sake is asked like the patches that it was part of.
     doubtful = np.concatenate([partly, np.ones(len(shown.tree) - len(partly), dtype=bool)])
@@ -137,11 +140,18 @@ class _ShownFaces:
     tree : PatchTree
     """
 
-    def __init__(self, surfaces: Surfaces, lit: NDArray[np.bool_], tree: PatchTree, gather_at: GatherAt) -> None:
+    def __init__(
+        self,
+        surfaces: Surfaces,
+        lit: NDArray[np.bool_],
+        tree: PatchTree,
+        gather_first: GatherAt,
+        gather_at: GatherAt,
+    ) -> None:
         self._surfaces, self._lit, self.tree, self._gather_at = surfaces, lit, tree, gather_at
         self._changed_shells = np.zeros(len(lit), dtype=bool)
         faces = conforming_faces(surfaces, tree, ~self._changed_shells)
-        self._first = light_up(surfaces, lit, faces, gather_at)
+        self._first = light_up(surfaces, lit, faces, gather_first)
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
         self._missed = _missed_light(surfaces, self._first, len(tree))
         self._shell_of_node = surfaces.shell_of_triangle[tree.triangle]

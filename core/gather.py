@@ -30,6 +30,12 @@ LEAST_VALID_SHARE = 0.9
 """A receiver is buried when fewer of its rays than this left it outside a solid; from an outside point all do. Inside a
 cupboard that stands against a wall, many rays seem to: they meet the wall where it lies in the plane of the back."""
 
+MOST_DOUBLINGS = 4
+"""Times that the hemisphere rays are doubled at most."""
+
+MORE_RECEIVERS = 8
+"""Times more receivers than patches have corners that there shall be room for."""
+
 FLAT = 1e-5
 """Difference between the shading normal and the surface's own below which no ray starts under the surface."""
 
@@ -42,6 +48,8 @@ class GatherRays:
     ----------
     hemisphere : int
         Rays that look up the radiosity of the surfaces around.
+    noise : float
+        Standard error of the light that they bring, relative to the mean, above which there are more of them.
     shadow : int
         Rays over all emitters.
     penumbra : int
@@ -53,6 +61,7 @@ class GatherRays:
     """
 
     hemisphere: int
+    noise: float
     shadow: int
     penumbra: int
     deep: int
@@ -174,6 +183,29 @@ def gather(
     direct = _direct(transport, emitters, receivers, counts, report)
     irradiance = direct.irradiance(emitters.radiance)
     return Gathered(means + irradiance, direct, irradiance, noise, hidden, kept)
+
+
+def enough_rays(counts: GatherRays, found: Gathered, receivers: Receivers, most_kept: int) -> GatherRays:
+    """The same counts, or more hemisphere rays where light comes from few small bright places and `found` is noisy.
+
+    All receivers get as many, as all take the same pattern.
+
+    Parameters
+    ----------
+    found : Gathered
+        At the corners of the patches.
+    most_kept : int
+        As of `gather`; there shall be room for more receivers.
+    """
+    area = receivers.sizes**2 * ~found.hidden
+    light = float(area @ (found.irradiance @ LUMINANCE))
+    if light <= 0.0:
+        return counts
+    noise = float(np.sqrt((area @ found.noise**2) * area.sum())) / light
+    doublings = min(round(2.0 * np.log2(max(noise / counts.noise, 1.0))), MOST_DOUBLINGS)
+    while doublings and (counts.hemisphere << doublings) * MORE_RECEIVERS * len(area) > most_kept:
+        doublings -= 1
+    return replace(counts, hemisphere=counts.hemisphere << doublings) if doublings else counts
 
 
 def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gathered:
