@@ -21,6 +21,7 @@ from .direct import all_emitters
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
+from .lit import Lit
 from .patches import clustered_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
@@ -30,7 +31,7 @@ from .result import BakeResult
 from .rows import BYTES_PER_RAY, COVER_GAP
 from .scene import Ints, Scene
 from .settings import BakeSettings
-from .subdivision import input_faces
+from .subdivision import Faces, input_faces
 from .surfaces import Surfaces, join
 from .transport import Transport
 from .visibility import RayScene
@@ -167,20 +168,22 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def gather_at(places: Receivers) -> Gathered:
         return gather(transport, cells, radiance, emitters, places, per_receiver, finest, most_kept, gathering)
 
-    def gather_first(places: Receivers) -> Gathered:
+    def light_up_first(faces: Faces) -> Lit:
         nonlocal per_receiver
-        found = gather_at(places)
-        per_receiver = enough_rays(per_receiver, found, places, most_kept)
-        return found if per_receiver is effort.gather else gather_at(places)
+        first = light_up(surfaces, lit, faces, gather_at)
+        per_receiver = enough_rays(per_receiver, first.noise(surfaces), len(first.places.points), most_kept)
+        if per_receiver is effort.gather:
+            return first
+        return replace(first, gathered=gather_at(first.places))
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
     cuts, on_faces = None, None
     if settings.output == "ORIGINAL":
-        shown = light_up(surfaces, lit, input_faces(surfaces), gather_first)
+        shown = light_up_first(input_faces(surfaces))
     else:
-        sizes = FaceSizes(finest, finest_cut, most_vertices)
+        sizes = FaceSizes(smallest, finest, finest_cut, most_vertices)
         shown, leaves = light_up_in_detail(
             surfaces,
             lit,
@@ -188,7 +191,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             transport.is_aside().reshape(-1, 2).any(axis=1),
             sizes,
             effort.tolerance,
-            gather_first,
+            light_up_first,
             gather_at,
             is_hidden,
         )

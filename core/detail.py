@@ -23,11 +23,16 @@ from .lit import Lit
 from .patches import PatchTree
 from .receivers import Receivers, receivers
 from .scene import Floats, Ints
+from .strips import widths
 from .subdivision import Faces, conforming_faces
 from .surfaces import Surfaces
 
 MOST_ROUNDS = 8
 """Rounds of splitting; each halves the faces at a shadow's border."""
+
+
+WIDTHS_ON_STRIP = 4.0
+"""Faces longer than a patch, and than so many widths of the flat strip that they are on, are split in any case."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,8 @@ class FaceSizes:
 
     Attributes
     ----------
+    patches : float, scene units
+        That of the patches.
     smallest : float, scene units
         Only faces of twice this size or more are split.
     smallest_cut : float, scene units
@@ -44,6 +51,7 @@ class FaceSizes:
         Receivers after which no face is split any more.
     """
 
+    patches: float
     smallest: float
     smallest_cut: float
     most_vertices: int
@@ -66,7 +74,7 @@ def light_up_in_detail(
     partly: NDArray[np.bool_],
     sizes: FaceSizes,
     tolerance: float,
-    gather_first: GatherAt,
+    light_up_first: Callable[[Faces], Lit],
     gather_at: GatherAt,
     is_hidden: IsHidden,
 ) -> tuple[Lit, PatchTree]:
@@ -83,8 +91,10 @@ def light_up_in_detail(
     sizes : FaceSizes
     tolerance : float
         RMS error over the surface to be reached, relative to the mean.
-    gather_first, gather_at : callable
-        Gather light at the corners of the patches, and at all vertices after them.
+    light_up_first : callable
+        Gathers light at the corners of the patches.
+    gather_at : callable
+        The same at all vertices after them.
     is_hidden : callable
         Tells whether receivers are hidden: faces that another object hides in part are split where it has a corner.
 
@@ -92,21 +102,30 @@ def light_up_in_detail(
     -------
     The faces and their light, and the tree whose leaves they lie in.
     """
-    shown = _ShownFaces(surfaces, lit, tree.copy(), gather_first, gather_at)
-
-    # What was split for its neighbours' sake is asked like the patches that it was part of.
-    doubtful = np.concatenate([partly, np.ones(len(shown.tree) - len(partly), dtype=bool)])
+    shown = _ShownFaces(surfaces, lit, tree.copy(), light_up_first, gather_at)
 
     def split_by_feet(first_new: int) -> Ints:
         nodes = [np.zeros(0, dtype=np.int64)]
         for lit, chosen in shown.parts():
             count = len(chosen)
             node = lit.faces.node
-            new = doubtful[shown.tree.patch[node]] if first_new == 0 else node >= first_new
+            new, patch = node >= first_new, node < len(partly)
+            new[patch] &= partly[shown.tree.patch[node[patch]]]
             seen = ~lit.gathered.hidden[lit.places.of_corner[:count]].any(axis=1)
             faces = np.flatnonzero(chosen & new & seen & (shown.tree.sizes(node) >= 2.0 * sizes.smallest_cut))
             nodes.append(node[faces_with_feet(lit.faces, lit.places, faces, is_hidden)])
         return np.unique(np.concatenate(nodes))
+
+    def split_on_strips(first_new: int) -> Ints:
+        leaf = np.unique(np.concatenate([lit.faces.node[chosen] for lit, chosen in shown.parts()]))
+        leaf = leaf[shown.tree.sizes(leaf) > sizes.patches]
+        triangle = shown.tree.triangle[leaf]
+        shells = np.zeros(len(surfaces.closed), dtype=bool)
+        shells[surfaces.shell_of_triangle[triangle]] = True
+        among = np.flatnonzero(shells[surfaces.shell_of_triangle])
+        width = widths(surfaces, among)[np.searchsorted(among, triangle)]
+        slender: Ints = leaf[shown.tree.sizes(leaf) > WIDTHS_ON_STRIP * width]
+        return slender
 
     def split_by_error(first_new: int) -> Ints:
         return _nodes_to_split(shown.missed_light(), shown.tree, sizes.smallest, tolerance)
@@ -119,7 +138,7 @@ def light_up_in_detail(
                 nodes.append(_nodes_with_crooked_cuts(lit, faces, shown.tree, sizes, is_hidden))
         return np.sort(np.concatenate(nodes))
 
-    for nodes_to_split in (split_by_feet, split_by_error, split_by_outline):
+    for nodes_to_split in (split_on_strips, split_by_feet, split_by_error, split_by_outline):
         first_new = 0
         for _ in range(MOST_ROUNDS):
             nodes = nodes_to_split(first_new)
@@ -145,13 +164,13 @@ class _ShownFaces:
         surfaces: Surfaces,
         lit: NDArray[np.bool_],
         tree: PatchTree,
-        gather_first: GatherAt,
+        light_up_first: Callable[[Faces], Lit],
         gather_at: GatherAt,
     ) -> None:
         self._surfaces, self._lit, self.tree, self._gather_at = surfaces, lit, tree, gather_at
         self._changed_shells = np.zeros(len(lit), dtype=bool)
         faces = conforming_faces(surfaces, tree, ~self._changed_shells)
-        self._first = light_up(surfaces, lit, faces, gather_first)
+        self._first = light_up_first(faces)
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
         self._missed = _missed_light(surfaces, self._first, len(tree))
         self._shell_of_node = surfaces.shell_of_triangle[tree.triangle]

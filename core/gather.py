@@ -185,25 +185,22 @@ def gather(
     return Gathered(means + irradiance, direct, irradiance, noise, hidden, kept)
 
 
-def enough_rays(counts: GatherRays, found: Gathered, receivers: Receivers, most_kept: int) -> GatherRays:
-    """The same counts, or more hemisphere rays where light comes from few small bright places and `found` is noisy.
+def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int) -> GatherRays:
+    """The same counts, or more hemisphere rays where light comes from few small bright places, so that they are noisy.
 
     All receivers get as many, as all take the same pattern.
 
     Parameters
     ----------
-    found : Gathered
-        At the corners of the patches.
+    noise : float
+        With these counts, relative to the mean.
+    receivers : int
+        Corners of the patches.
     most_kept : int
         As of `gather`; there shall be room for more receivers.
     """
-    area = receivers.sizes**2 * ~found.hidden
-    light = float(area @ (found.irradiance @ LUMINANCE))
-    if light <= 0.0:
-        return counts
-    noise = float(np.sqrt((area @ found.noise**2) * area.sum())) / light
     doublings = min(round(2.0 * np.log2(max(noise / counts.noise, 1.0))), MOST_DOUBLINGS)
-    while doublings and (counts.hemisphere << doublings) * MORE_RECEIVERS * len(area) > most_kept:
+    while doublings and (counts.hemisphere << doublings) * MORE_RECEIVERS * receivers > most_kept:
         doublings -= 1
     return replace(counts, hemisphere=counts.hemisphere << doublings) if doublings else counts
 

@@ -4,13 +4,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .direct import LUMINANCE
 from .error_estimate import relative_error
 from .gather import Gathered, corner_values
+from .geometry import triangle_areas
 from .patches import PatchTree
 from .receivers import Receivers
 from .scene import Floats, Ints
@@ -55,6 +58,13 @@ class Lit:
         return relative_error(
             corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.counted(surfaces)
         )
+
+    def noise(self, surfaces: Surfaces) -> float:
+        """Noise of the hemisphere rays over the surface, relative to the mean light."""
+        weight = triangle_areas(self.faces.points[self.faces.corners[self.face]]) * self.counted(surfaces)
+        light = float(weight @ (self.corner_irradiance() @ LUMINANCE).mean(axis=1))
+        square = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
+        return math.sqrt(square * weight.sum()) / light if light > 0.0 else 0.0
 
     def part(self, kept: NDArray[np.bool_]) -> Lit:
         """Some of the faces, (faces,) bool, which share no receiver with the others."""
