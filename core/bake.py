@@ -114,7 +114,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     clock.start("Preparing", 0.0, 0.02)
     surfaces = join(scene)
     check_light(surfaces)
-    with closing(RayScene(surfaces.points, surfaces.triangles, settings.threads)) as rays:
+    with closing(RayScene(surfaces.traced_points(), surfaces.triangles, settings.threads)) as rays:
         return _bake(scene, surfaces, rays, settings, clock)
 
 

@@ -36,6 +36,10 @@ MOST_DOUBLINGS = 4
 MORE_RECEIVERS = 8
 """Times more receivers than patches have corners that there shall be room for."""
 
+SMALLER_FOR_CUTS = 8.0
+"""Times that faces may be smaller than others where an outline crosses them. What covers a place must not depend on it:
+at the rim of a lamp a millimetre under a ceiling, the light in the gap would show there alone."""
+
 FLAT = 1e-5
 """Difference between the shading normal and the surface's own below which no ray starts under the surface."""
 
@@ -173,7 +177,7 @@ def gather(
         places = places.reshape(last - first, counts.hemisphere)
         means, noise, valid = _mean_seen(radiance, places)
         distance = found.distance.reshape(places.shape)
-        hidden = _covered(transport, np.minimum(receivers.sizes[part], finest), distance) | (valid < LEAST_VALID_SHARE)
+        hidden = _covered(transport, receivers.sizes[part], finest, distance) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
         return means, noise, hidden
 
@@ -228,7 +232,7 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
         found, _ = _looked(transport, receivers, part, pattern)
         buried = (found.triangle >= 0) & transport.unlit_side[2 * found.triangle + found.back]
         distance = found.distance.reshape(last - first, rays)
-        covered = _covered(transport, np.minimum(receivers.sizes[part], finest), distance)
+        covered = _covered(transport, receivers.sizes[part], finest, distance)
         result: NDArray[np.bool_] = covered | (buried.reshape(-1, rays).mean(axis=1) > 1.0 - LEAST_VALID_SHARE)
         return result
 
@@ -272,8 +276,8 @@ def _looked(
     return found, below
 
 
-def _covered(transport: Transport, sizes: Floats, distance: Singles) -> NDArray[np.bool_]:
-    reach = (COVER_GAP * transport.rays.scale * sizes).astype(np.float32)
+def _covered(transport: Transport, sizes: Floats, finest: float, distance: Singles) -> NDArray[np.bool_]:
+    reach = (COVER_GAP * transport.rays.scale * np.minimum(SMALLER_FOR_CUTS * sizes, finest)).astype(np.float32)
     result: NDArray[np.bool_] = (distance < reach[:, None]).mean(axis=1) > LEAST_COVERED_SHARE
     return result
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from .direct import LUMINANCE
 from .sampling import cosine_directions, hashed, triangle_weights
 from .scene import Floats, Ints
-from .surfaces import Surfaces
+from .surfaces import Surfaces, signed_volumes
 from .visibility import OFFSET, RayScene
 
 WALKS = 16384
@@ -41,7 +41,8 @@ EXPECTED_VISITS = 20.0
 def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_]:
     """Whether light reaches the front and the back of each shell, (shells, 2) bool."""
     shells = len(surfaces.closed)
-    lamp, inside = _lamps(surfaces), _insides(surfaces)
+    # The inside is the back, unless the normals look inward.
+    lamp, inside = _lamps(surfaces), (signed_volumes(surfaces) >= 0.0).astype(int)
     walks = _from_emitters(surfaces, rays, seed)
     left = surfaces.shell_of_triangle[walks.triangle]
     outward = np.flatnonzero(~lamp[left] | (walks.back != inside[left]))
@@ -179,13 +180,6 @@ def _lamps(surfaces: Surfaces) -> NDArray[np.bool_]:
         inside = (low[near] > low[candidate]).all(axis=1) & (high[near] < high[candidate]).all(axis=1)
         lamp[candidate] = not inside.any()
     return lamp
-
-
-def _insides(surfaces: Surfaces) -> Ints:
-    """The side of each shell that is the inside where it is closed: 1, the back, unless its normals look inward."""
-    corners = surfaces.points[surfaces.triangles] - surfaces.points[surfaces.triangles[0, 0]]
-    volume = np.einsum("tx,tx->t", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
-    return (np.bincount(surfaces.shell_of_triangle, weights=volume, minlength=len(surfaces.closed)) >= 0.0).astype(int)
 
 
 def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:
