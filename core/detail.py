@@ -32,7 +32,7 @@ MOST_ROUNDS = 8
 
 
 WIDTHS_ON_STRIP = 4.0
-"""Faces longer than a patch, and than so many widths of the flat strip that they are on, are split in any case."""
+"""Faces longer than a patch, and than so many widths of the strip that they are on, are split in any case."""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Flat pieces of surfaces and how wide they are: the sides of a table's leg, frames, rods.
+"""Pieces of surfaces between hard edges and how wide they are: the sides of a table's leg, frames, thin boards.
 
 On a strip as wide as one face no neighbour tells how light changes along it, so the light cannot ask for more vertices.
 """
@@ -13,12 +13,12 @@ from .geometry import connected_components, lengths
 from .scene import Floats, Ints
 from .surfaces import Surfaces
 
-FLAT = 1.0 - 1e-6
-"""Cosine between the normals of triangles that go on in one plane."""
+ROUND = 0.6
+"""Cosine between the normals of triangles above which a surface goes on across their edge, flat or round."""
 
 
 def widths(surfaces: Surfaces, triangle: Ints) -> Floats:
-    """Width of the flat piece that each triangle is part of, were it a long strip: twice its area over its outline.
+    """Width of the piece that each triangle is part of, were it a long strip: twice its area over its outline.
 
     Parameters
     ----------
@@ -40,13 +40,13 @@ def widths(surfaces: Surfaces, triangle: Ints) -> Floats:
     same = np.flatnonzero(key[order][1:] == key[order][:-1])
     first, second = order[same], order[same + 1]
     normals = surfaces.normals[triangle]
-    flat = np.einsum("px,px->p", normals[first // 3], normals[second // 3]) > FLAT
-    first, second = first[flat], second[flat]
+    on = np.einsum("px,px->p", normals[first // 3], normals[second // 3]) > ROUND
+    first, second = first[on], second[on]
     piece = connected_components(np.stack([first // 3, second // 3], axis=1), count)
     inner = np.zeros(3 * count, dtype=bool)
     inner[first] = inner[second] = True
     outline = np.bincount(np.repeat(piece, 3), weights=np.where(inner, 0.0, length), minlength=count)
     area = np.bincount(piece, weights=surfaces.areas[triangle], minlength=count)
-    # A closed surface that is flat all over does not exist, but one without an outline must not divide by zero.
+    # A ball has no outline, and is as wide as can be.
     width: Floats = np.divide(2.0 * area, outline, out=np.full(count, np.inf), where=outline > 0.0)[piece]
     return width

@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Solids that touch walls, floors and each other in one plane, and objects thinner than the faces they stand on."""
+
+import numpy as np
+import pytest
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.core.surfaces import HAIR, join
+from radiosity_bake.core.visibility import OFFSET, RayScene
+
+from tests.core.building import DARK, block, flipped
+from tests.scenes import exact
+
+ROOM = exact.closed_room((2, 2, 2), reflectance=0.5)
+LAMP = exact.rectangle("lamp", (0.7, 0.7, 1.9), (0, 0.6, 0), (0.6, 0, 0), emission=5.0)
+DRAFT = BakeSettings(quality="DRAFT")
+
+
+@pytest.mark.parametrize("offset", [0.0, 100.0])
+def test_a_ray_from_inside_a_solid_meets_the_solid_and_not_the_wall_behind(offset):
+    solid = block("cupboard", (0.0, 0.5, 0.0), (0.6, 1.5, 1.2))
+    surfaces = join(Scene((ROOM, solid, LAMP), DARK))
+    surfaces.points[:] += offset
+    rng = np.random.default_rng(0)
+    origins = rng.uniform((0.1, 0.6, 0.1), (0.5, 1.4, 1.1), (4000, 3)) + offset
+    ways = rng.normal(size=(4000, 3)).astype(np.float32)
+    own = surfaces.mesh_of_triangle == 1
+
+    def met_own(points):
+        rays = RayScene(points, surfaces.triangles, 1)
+        hits = rays.first_hits(rays.local(origins), ways)
+        rays.close()
+        return own[hits.triangle] & hits.back
+
+    assert met_own(surfaces.traced_points()).all()
+    # A quarter of the rays or more meet faces that touch the room's, and would be left to chance.
+    assert not met_own(surfaces.points).all()
+
+
+def test_only_solids_are_smaller_and_by_less_than_rays_start_off_their_surface():
+    solid = block("block", (0.5, 0.5, 0.0), (1.0, 1.0, 0.8))
+    surfaces = join(Scene((ROOM, flipped(ROOM), solid, LAMP), DARK))
+    moved = np.linalg.norm(surfaces.traced_points() - surfaces.points, axis=1)
+    of_mesh = np.split(moved, surfaces.first_point_of_mesh[1:-1])
+    assert of_mesh[0].max() == of_mesh[3].max() == 0.0
+    for part in of_mesh[1:3]:
+        assert part == pytest.approx(HAIR * surfaces.extent)
+    assert HAIR < OFFSET
+
+
+def test_a_cupboard_against_a_wall_costs_no_more_than_one_a_step_off():
+    def vertices(gap):
+        cupboard = block("cupboard", (gap, 0.4, 0.0), (gap + 0.5, 1.6, 1.4))
+        steps = [
+            block(f"step {k}", (1.2, 1.8 - 0.2 * k, 0.0), (2.0 - gap, 2.0 - 0.2 * k - gap / 2, 0.15 * k))
+            for k in (2, 3, 4)
+        ]
+        return bake(Scene((ROOM, LAMP, cupboard, *steps), DARK), DRAFT).report["vertices"]
+
+    # When it stands off, the wall behind it and its own back are seen, and take some.
+    assert vertices(0.0) <= 1.1 * vertices(0.1)
+
+
+def test_a_wall_thinner_than_the_faces_it_stands_on_hides_what_is_under_it():
+    ground = exact.rectangle("ground", (-4, -4, 0), (8, 0, 0), (0, 8, 0), reflectance=0.3)
+    wall = block("wall", (0.04, -1.53, 0.0), (0.11, 1.47, 1.0), reflectance=0.3)
+    result = bake(Scene((ground, wall), np.ones(3)), BakeSettings(quality="GOOD"))
+    mesh = result.meshes[0]
+    middle = mesh.vertices[mesh.triangles].mean(axis=1)
+    under = (middle[:, 0] > 0.05) & (middle[:, 0] < 0.10) & (np.abs(middle[:, 1]) < 1.4)
+    assert under.sum() > 10
+    assert mesh.irradiance[under].max() == 0.0
+    # It is narrower than the first faces, so that without a search some of these would span it.
+    assert result.report["minimum_size"] > 0.11 - 0.04
+
+
+@pytest.mark.parametrize("overlap", [0.0, 0.05], ids=["flush", "through the ceiling"])
+def test_a_lamp_in_the_ceiling_does_not_light_what_is_behind_it(overlap):
+    housing = block("housing", (0.7, 0.7, 1.9), (1.3, 1.3, 2.0 + overlap), reflectance=0.5)
+    glows = housing.corner_normals[:, 0, 2] < -0.5
+    housing.emission[glows] = 5.0
+    result = bake(Scene((ROOM, housing), DARK), DRAFT)
+    mesh = result.meshes[0]
+    middle = mesh.vertices[mesh.triangles].mean(axis=1)
+    behind = (middle[:, 2] > 1.99) & (np.abs(middle[:, :2] - 1.0).max(axis=1) < 0.27)
+    assert behind.sum() > 5
+    assert mesh.irradiance[behind].max() == 0.0
