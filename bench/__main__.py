@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from contextlib import nullcontext
 from datetime import UTC, datetime
 from typing import Any
 
@@ -20,7 +21,7 @@ from radiosity_bake.core.settings import QUALITIES, BakeSettings
 from . import form_factors, publish
 from .accuracy import compare
 from .machine import OUT, write_json
-from .measure import Judged, Measured, judged, measure, operator_costs
+from .measure import Judged, Measured, by_form_factors_alone, judged, measure, operator_costs
 from .methods import BENCH_SCENES, OURS, RULE, UNIFORM
 from .peers import Run, runs_of
 from .remembered import Remembered, answered, known_answer
@@ -40,8 +41,7 @@ Entry = dict[str, Any]
 def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
     """Yield our bakes: each quality as a user has it; uniform, and by the paper's rule, at several sizes.
 
-    With a minimum size given, no face is made finer than it: form factors decide down to the automatic size, and the
-    light where they left faces of twice the size.
+    By the paper's rule, form factors alone decide what is split; the light on the faces does not.
     """
     measure(case, BakeSettings(quality="DRAFT"))  # the first bake of a process also pays for loading libraries
     whole = operator_costs(case, qualities)
@@ -49,10 +49,12 @@ def ours(case: Judged, qualities: tuple[str, ...]) -> Iterator[Entry]:
         entry = baked(OURS, quality, measure(case, BakeSettings(quality=quality)))
         clocks = ("seconds", "processor_seconds")
         yield {**entry, **{f"operator_{clock}": round(whole[quality][clock], 4) for clock in clocks}}
-    for name, method in ((UNIFORM, "UNIFORM"), (RULE, "ADAPTIVE")):
+    for name, method, how in ((UNIFORM, "UNIFORM", nullcontext), (RULE, "ADAPTIVE", by_form_factors_alone)):
         for patches in PATCHES:
             size = even_size(case.scene, patches)
-            yield baked(name, f"n = {size:.3g} m", measure(case, BakeSettings(method=method, minimum_size=size)))
+            with how():
+                measured = measure(case, BakeSettings(method=method, minimum_size=size))
+            yield baked(name, f"n = {size:.3g} m", measured)
 
 
 def baked(method: str, setting: str, measured: Measured) -> Entry:

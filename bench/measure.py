@@ -5,16 +5,20 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
+from radiosity_bake.core import bake as bake_module
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.result import BakeResult
 from radiosity_bake.core.scene import Scene
@@ -107,6 +111,18 @@ def operator_costs(case: Judged, qualities: Sequence[str]) -> dict[str, dict[str
         command = [sys.executable, str(script), str(given), *qualities]
         done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
     return {found["quality"]: found for found in json.loads(done.stdout.splitlines()[-1])}
+
+
+@contextmanager
+def by_form_factors_alone() -> Iterator[None]:
+    """Let adaptive bakes at a minimum size refine as the paper does: by form factors down to it, and not by the light."""
+
+    def same_sizes(surfaces: Any, settings: BakeSettings, effort: Any) -> tuple[float, float]:
+        return settings.minimum_size, settings.minimum_size
+
+    patient = {name: replace(effort, tolerance=math.inf) for name, effort in bake_module.EFFORTS.items()}
+    with patch.object(bake_module, "minimum_sizes", same_sizes), patch.object(bake_module, "EFFORTS", patient):
+        yield
 
 
 def measure(case: Judged, settings: BakeSettings) -> Measured:
