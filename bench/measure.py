@@ -115,7 +115,7 @@ def operator_costs(case: Judged, qualities: Sequence[str]) -> dict[str, dict[str
 
 @contextmanager
 def by_form_factors_alone() -> Iterator[None]:
-    """Let adaptive bakes at a minimum size refine as the paper does: by form factors down to it, and not by the light."""
+    """Let adaptive bakes at a minimum size refine as the paper does: by form factors down to it, not by the light."""
 
     def same_sizes(surfaces: Any, settings: BakeSettings, effort: Any) -> tuple[float, float]:
         return settings.minimum_size, settings.minimum_size
