@@ -59,8 +59,8 @@ class Effort:
 
 EFFORTS = {
     "DRAFT": Effort(2_000, 32, 0.04, GatherRays(64, 0.05, 16, 32, 64, 0.06)),
-    "GOOD": Effort(4_000, 64, 0.012, GatherRays(256, 0.016, 64, 128, 256, 0.01)),
-    "HIGH": Effort(16_000, 128, 0.005, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
+    "GOOD": Effort(4_000, 64, 0.008, GatherRays(384, 0.013, 64, 128, 256, 0.01)),
+    "HIGH": Effort(16_000, 128, 0.004, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
 }
 
 BYTES_PER_VERTEX = 4096
