@@ -152,7 +152,8 @@ def direct_on_patches(
     number[balance.elements] = np.arange(count)
     whole = np.flatnonzero((balance.elements == balance.base) & (cover.twin[balance.base] < 0))
     power = balance.areas * balance.exchange.apply(balance.emission).sum(axis=1)
-    much = power[whole] > MUCH_LIGHT * power.sum()
+    # How much of a lamp's light a patch gets, no ray has told: all are taken as if it were much.
+    much = (power[whole] > MUCH_LIGHT * power.sum()) | (len(emitters.lamps) > 0)
     direct = []
     for rows, points in ((whole[~much], POINTS_PER_PATCH), (whole[much], MORE_POINTS)):
         at_points = _direct_on(transport, balance, emitters, rows, points, report)
@@ -176,7 +177,7 @@ def unreflected_light(balance: Balance, direct: DirectLight, emitters: Emitters,
     """
     left = left_emission(surfaces, emitters)
     by_rays = balance.exchange.apply(balance.means.of(left))
-    return direct.irradiance(emitters.radiance) + by_rays + balance.escape[:, None] * surfaces.world
+    return direct.irradiance(emitters.strengths) + by_rays + balance.escape[:, None] * surfaces.world
 
 
 def _direct_on(
@@ -230,22 +231,29 @@ def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Em
     return values
 
 
-def energy(balance: Balance, solution: Solution, surfaces: Surfaces) -> dict[str, float]:
+def energy(balance: Balance, solution: Solution, from_lamps: Floats, surfaces: Surfaces) -> dict[str, float]:
     """Where the power goes, in W summed over the channels (for lengths in metres).
 
-    `imbalance` is what emission and world bring in less what is absorbed and what leaves, as a share of what comes in:
-    the form factors are sampled, so it is a check on them.
+    `imbalance` is what emission, world and lamps bring in less what is absorbed and what leaves, as a share of what
+    comes in: the form factors are sampled, so it is a check on them. Of lamps, what misses every surface is not known.
+
+    Parameters
+    ----------
+    from_lamps : (m, 3) float, W m^-2 sr^-1
+        Irradiance over pi that elements get of lamps.
     """
     area = np.pi * balance.areas[:, None]
     emitted = float((area * balance.emission).sum())
     world = float((area * balance.escape[:, None] * surfaces.world).sum())
+    lamps = float((area * from_lamps).sum())
     reflected = float((area * solution.reflected).sum())
     absorbed = float((area * (1.0 - balance.reflectance) * solution.incident).sum())
     escaped = float((area * (balance.emission + solution.reflected) * balance.escape[:, None]).sum())
-    total = emitted + world
+    total = emitted + world + lamps
     return {
         "emitted": emitted,
         "from_world": world,
+        "from_lamps": lamps,
         "reflected": reflected,
         "absorbed": absorbed,
         "escaped": escaped,

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Direct light of emitting triangles: exact form factors times the visible share of what they stand for.
+"""Direct light of emitting triangles: exact form factors times the visible share of what they stand for; and of lamps.
 
 Every receiver point spreads a fixed number of shadow rays over the emitters in proportion to what each would send it
-unoccluded. Few emitters are all looked at; of many, see `many_lights`.
+unoccluded. Few emitters are all looked at; of many, see `many_lights`. Lamps have rays of their own, see `lamps`.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from .direct_light import DirectLight
 from .enclosure import enclosed_sides
 from .form_factors import above_horizon, heights_of, piece_factor
+from .lamps import lamp_light
 from .light_tree import LightTree, light_tree
 from .many_lights import light_of_many
-from .sampling import LATTICE_ERROR, Singles, hashed, sequence, triangle_lattice
-from .scene import Floats, Ints
+from .sampling import LATTICE_ERROR, Singles, hashed, ray_counts, sequence, triangle_lattice
+from .scene import Floats, Ints, Lamp
 from .surfaces import Surfaces
 from .visibility import OFFSET, RayScene
 
@@ -41,9 +42,6 @@ GRAZING = 1e-7
 """Cosine at an emitter below which a receiver lies in its plane, as the emitter's own points do up to rounding: it sees
 none of it. Double precision leaves 1e-11 at 10 km from the origin."""
 
-RAY_COUNTS = np.array([1, 2, 3, *(n << k for k in range(1, 12) for n in (2, 3))])
-"""So many rays a part of an emitter may get: all that get the same number can be treated at once."""
-
 PATTERNS = 16
 """Ways to spread the rays over a triangle, of which a receiver's key chooses one."""
 
@@ -56,7 +54,7 @@ RAYS_PER_BATCH = 2**15
 
 @dataclass(frozen=True, eq=False)
 class Emitters:
-    """Triangles whose light is computed explicitly.
+    """Triangles and lamps whose light is computed explicitly: k triangles, and l lamps with the numbers from k on.
 
     Attributes
     ----------
@@ -70,6 +68,7 @@ class Emitters:
         Emitters on solids, whose backs nothing sees.
     enclosed : (k, 2) bool
         Fronts and backs that see little but other emitters.
+    lamps : tuple of Lamp
     """
 
     triangle: Ints
@@ -79,6 +78,18 @@ class Emitters:
     radiance: Floats
     one_sided: NDArray[np.bool_]
     enclosed: NDArray[np.bool_]
+    lamps: tuple[Lamp, ...] = ()
+
+    @cached_property
+    def strengths(self) -> Floats:
+        """What weights of direct light count by, (k + l, 3): radiance of triangles, strength of lamps."""
+        return np.concatenate([self.radiance, *(lamp.strength[None] for lamp in self.lamps)])
+
+    def lamps_alone(self) -> Floats:
+        """The strengths, with triangles that are dark, (k + l, 3)."""
+        alone = self.strengths.copy()
+        alone[: len(self.triangle)] = 0.0
+        return alone
 
     @cached_property
     def trees(self) -> tuple[tuple[LightTree, float], ...]:
@@ -95,12 +106,12 @@ class Emitters:
         return tuple((tree, weight / total) for tree, weight in found)
 
     def recoloured(self, surfaces: Surfaces) -> Emitters:
-        """The same emitters, with the emission that `surfaces` have."""
-        return replace(self, radiance=surfaces.emission[self.triangle])
+        """The same emitters, with the emission and the lamps that `surfaces` have."""
+        return replace(self, radiance=surfaces.emission[self.triangle], lamps=surfaces.lamps)
 
 
 def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, seed: int) -> Emitters:
-    """All triangles that emit.
+    """All triangles that emit, and all lamps.
 
     Parameters
     ----------
@@ -119,6 +130,7 @@ def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, see
         surfaces.emission[chosen],
         ~lit[surfaces.shell_of_triangle[chosen], 1],
         enclosed,
+        surfaces.lamps,
     )
 
 
@@ -151,6 +163,27 @@ def direct_light(
     uncertainty : (n,) float, W m^-2 sr^-1
         Standard error of its luminance, were the rays independent: 0 where every emitter is seen whole or not at all.
     """
+    by_triangles, doubt = _direct_of_triangles(emitters, rays, points, normals, lift, keys, shadow_rays, seed)
+    if not emitters.lamps:
+        return by_triangles, doubt
+    first, luminance = len(emitters.triangle), emitters.strengths @ LUMINANCE
+    by_lamps, more = lamp_light(
+        emitters.lamps, luminance[first:], first, rays, points, normals, lift, keys, shadow_rays, seed
+    )
+    return DirectLight.joined([by_triangles, by_lamps]), np.hypot(doubt, more)
+
+
+def _direct_of_triangles(
+    emitters: Emitters,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    keys: Ints,
+    shadow_rays: int,
+    seed: int,
+) -> tuple[DirectLight, Floats]:
+    """What emitting triangles send, in batches."""
     count = len(points)
     if len(emitters.triangle) == 0 or count == 0:
         return DirectLight.none(count), np.zeros(count)
@@ -195,7 +228,7 @@ def _direct_of_each(
         factor[np.maximum.reduce(above) <= 0.0] = 0.0
     light = factor * (emitters.radiance @ LUMINANCE)[emitter]
     total = np.bincount(row, weights=light, minlength=count)
-    rays_of = _ray_counts(shadow_rays * light / np.maximum(total, np.finfo(np.float64).tiny)[row])
+    rays_of = ray_counts(shadow_rays * light / np.maximum(total, np.finfo(np.float64).tiny)[row])
     rays_of[factor == 0.0] = 0
     pattern = (hashed(keys, 1, seed)[:, 0] * PATTERNS).astype(np.int64)
     origins, back = rays.lifted(points, lift)
@@ -268,12 +301,6 @@ def _off_plane(way: Floats, normals: Floats, scale: float) -> Floats:
     """
     facing = -(way * normals).sum(axis=0) * scale
     return np.clip(facing / 2.0, -OFFSET, OFFSET) * normals
-
-
-def _ray_counts(wanted: Floats) -> Ints:
-    """Those of `RAY_COUNTS` that are nearest in ratio to the numbers wanted."""
-    counts: Ints = RAY_COUNTS[np.searchsorted(np.sqrt(RAY_COUNTS[1:] * RAY_COUNTS[:-1]), wanted)]
-    return counts
 
 
 def _ways(corners: Singles, pattern: Ints, rays: int, seed: int) -> Singles:

@@ -185,7 +185,7 @@ def gather(
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
     hidden = np.concatenate([p[2] for p in parts])
     direct = _direct(transport, emitters, receivers, counts, report)
-    irradiance = direct.irradiance(emitters.radiance)
+    irradiance = direct.irradiance(emitters.strengths)
     return Gathered(means + irradiance, direct, irradiance, noise, hidden, kept)
 
 
@@ -313,13 +313,13 @@ def _direct(
         return light, uncertainty
 
     everyone = np.arange(len(receivers.points))
-    if len(emitters.triangle) == 0:
+    if len(emitters.strengths) == 0:
         return DirectLight.none(len(everyone))
     direct, uncertainty = pass_over(everyone, counts.shadow, 201, 0.7, 0.75)
     again = np.flatnonzero(uncertainty > 0.0)
     more, uncertainty[again] = pass_over(again, counts.penumbra, 202, 0.75, 0.85)
     direct = direct.with_more(everyone, more, again)
-    mean = float((direct.irradiance(emitters.radiance) @ LUMINANCE).mean())
+    mean = float((direct.irradiance(emitters.strengths) @ LUMINANCE).mean())
     deep = np.flatnonzero(uncertainty > counts.tolerance * mean)
     more, _ = pass_over(deep, counts.deep, 203, 0.85, 1.0)
     return direct.with_more(everyone, more, deep)

@@ -101,8 +101,11 @@ def check_light(surfaces: Surfaces) -> None:
     ------
     NoLightError
     """
-    if not (surfaces.emission.any() or surfaces.world.any()):
-        raise NoLightError("Nothing in the scene emits light; give a material some Emission, or the World a colour")
+    lamps = any(lamp.strength.any() for lamp in surfaces.lamps)
+    if not (lamps or surfaces.emission.any() or surfaces.world.any()):
+        raise NoLightError(
+            "Nothing in the scene emits light; add a lamp, or give a material some Emission or the World a colour"
+        )
 
 
 def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
@@ -140,7 +143,7 @@ def looked_again(
 
 def relit(workers: Workers, emitters: Emitters, radiance: Radiance, gathered: Gathered) -> Gathered:
     """What was gathered, with other light: the emitters' and what the same rays see of everything else."""
-    direct = gathered.direct.irradiance(emitters.radiance)
+    direct = gathered.direct.irradiance(emitters.strengths)
     return look_again(workers, radiance, replace(gathered, direct_irradiance=direct))
 
 
@@ -185,7 +188,8 @@ def result_of(
     output = story.settings.output
     meshes, warnings = baked_meshes(scene, surfaces, lit, faces, face, irradiance, output)
     error = shown.error(surfaces)
-    balance = energy(patches.balance, solution, surfaces)
+    from_lamps = patches.direct.irradiance(patches.emitters.lamps_alone())
+    balance = energy(patches.balance, solution, from_lamps, surfaces)
     clock.stop()
     report: dict[str, Any] = {
         **story.counts,

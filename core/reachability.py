@@ -15,13 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .direct import LUMINANCE
-from .sampling import cosine_directions, hashed, triangle_weights
-from .scene import Floats, Ints
+from .geometry import normalized
+from .sampling import cosine_directions, frames, hashed, triangle_weights
+from .scene import AreaLamp, Floats, Ints, Lamp, SunLamp
 from .surfaces import Surfaces, signed_volumes
 from .visibility import OFFSET, RayScene
 
 WALKS = 16384
 """Random walks started; a side that takes part in the lighting of a room meets hundreds of them."""
+
+FEWEST_WALKS = 256
+"""Walks that each of many lamps starts: enough to meet the front of what it lights more often than `LEAST_VISITS`."""
 
 LONGEST_WALK = 16
 
@@ -49,6 +53,10 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     visits = _visits(surfaces, rays, walks.taken(outward), seed)
     if surfaces.world.any():
         visits += _visits(surfaces, rays, _from_world(surfaces, rays, seed), seed + 7)
+    shining = [source for source in surfaces.lamps if source.strength.any()]
+    for number, source in enumerate(shining):
+        count = max(WALKS // len(shining), FEWEST_WALKS)
+        visits += _visits(surfaces, rays, _from_lamp(source, surfaces, rays, count, seed + 100 + number), seed + 8)
     area = np.bincount(surfaces.shell_of_triangle, weights=surfaces.areas, minlength=shells)
     expected = visits.sum() * area / area.sum()
     lit = visits >= LEAST_VISITS
@@ -135,15 +143,46 @@ def _from_emitters(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
 def _from_world(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
     """Walks inward from a sphere around the scene: with cosine distribution they cross it evenly from everywhere."""
     drawn = hashed(np.arange(WALKS), 4, seed + 3)
-    z, turn = 1.0 - 2.0 * drawn[:, 0], 2.0 * np.pi * drawn[:, 1]
-    flat = np.sqrt(np.maximum(0.0, 1.0 - z * z))
-    outward = np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
+    outward = _even_directions(drawn)
     used = surfaces.points[surfaces.triangles.ravel()]
     low, high = used.min(axis=0), used.max(axis=0)
     radius = 0.5 * float(np.linalg.norm(high - low)) * 1.01
     outside = np.full(WALKS, -1, dtype=np.int64)
     origin = (low + high) / 2.0 + radius * outward
     return Walks(outside, np.zeros(WALKS, dtype=bool), origin, cosine_directions(drawn[:, 2:], -outward))
+
+
+def _from_lamp(lamp: Lamp, surfaces: Surfaces, rays: RayScene, count: int, seed: int) -> Walks:
+    """So many walks from a lamp, in the directions that it shines in."""
+    drawn = hashed(np.arange(count), 4, seed)
+    if isinstance(lamp, SunLamp):
+        used = surfaces.points[surfaces.triangles.ravel()]
+        low, high = used.min(axis=0), used.max(axis=0)
+        radius = 0.5 * float(np.linalg.norm(high - low)) * 1.01
+        direction = np.broadcast_to(lamp.direction, (count, 3))
+        across = frames(direction, np.zeros(count))[:, :2].astype(np.float64)
+        place = np.einsum("nk,nkx->nx", 2.0 * drawn[:, :2] - 1.0, across)
+        origin = (low + high) / 2.0 + radius * (place - direction)
+    elif isinstance(lamp, AreaLamp):
+        normal = np.broadcast_to(lamp.normal, (count, 3))
+        # A rectangle's corners lie outside of its ellipse, which is no harm here.
+        origin = lamp.centre + (2.0 * drawn[:, :2] - 1.0) @ lamp.half_axes + normal * (OFFSET / rays.scale)
+        direction = cosine_directions(drawn[:, 2:], normal)
+    else:
+        direction = _even_directions(drawn)
+        if lamp.cone is not None:
+            # Even over the cone in the lamp's own space: between its edge and its axis.
+            local = _even_directions(np.stack([drawn[:, 0] * (1.0 - lamp.cone.cosine) / 2.0, drawn[:, 1]], axis=1))
+            direction = normalized(local * [1.0, 1.0, -1.0] @ np.linalg.inv(lamp.cone.inverse).T)
+        origin = np.broadcast_to(lamp.centre, (count, 3))
+    return Walks(np.full(count, -1, dtype=np.int64), np.zeros(count, dtype=bool), origin, direction)
+
+
+def _even_directions(drawn: Floats) -> Floats:
+    """Directions spread evenly over the sphere by the first two of the numbers drawn, from +z on, (n, 3)."""
+    z, turn = 1.0 - 2.0 * drawn[:, 0], 2.0 * np.pi * drawn[:, 1]
+    flat = np.sqrt(np.maximum(0.0, 1.0 - z * z))
+    return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
 
 
 def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:

@@ -30,7 +30,7 @@ from .lighting import (
 from .lit import Lit
 from .progress import ProgressCallback, no_progress
 from .result import BakeResult
-from .scene import Scene, SurfaceMesh
+from .scene import Lamp, Scene, SurfaceMesh
 from .surfaces import Surfaces
 from .workers import Workers
 
@@ -46,7 +46,7 @@ class KeptTransport:
     Attributes
     ----------
     shapes : tuple of bytes
-        Of the scene's meshes, to notice that one was changed.
+        Of the scene's meshes and lamps, to notice that one was changed.
     surfaces : Surfaces
         With the colours of the bake.
     lit : (shells, 2) bool
@@ -120,9 +120,20 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
     return digest.digest()
 
 
+def shape_of_lamp(lamp: Lamp) -> bytes:
+    """A number that changes with anything about a lamp but its strength and its name."""
+    digest = blake2b(type(lamp).__name__.encode(), digest_size=16)
+    cone = getattr(lamp, "cone", None)
+    for part in (lamp, *(() if cone is None else (cone,))):
+        for field in fields(part):
+            if field.name not in {"name", "strength", "cone"}:
+                digest.update(np.asarray(getattr(part, field.name), dtype=np.float64).tobytes())
+    return digest.digest()
+
+
 def shapes_of(scene: Scene) -> tuple[bytes, ...]:
-    """The shape of each mesh."""
-    return tuple(shape_of(mesh) for mesh in scene.meshes)
+    """The shape of each mesh, then of each lamp."""
+    return (*(shape_of(mesh) for mesh in scene.meshes), *(shape_of_lamp(lamp) for lamp in scene.lamps))
 
 
 def relight(kept: KeptTransport, scene: Scene, progress: ProgressCallback = no_progress) -> BakeResult:
@@ -133,7 +144,7 @@ def relight(kept: KeptTransport, scene: Scene, progress: ProgressCallback = no_p
     kept : KeptTransport
         Not changed.
     scene : Scene
-        The same meshes, with any reflectance, emission and world.
+        The same meshes and lamps, with any reflectance, emission, strengths and world.
 
     Returns
     -------
@@ -179,17 +190,20 @@ def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Wor
 
 
 def check_shapes(kept: KeptTransport, scene: Scene) -> None:
-    """Refuse a scene whose meshes are not those that were baked.
+    """Refuse a scene whose meshes and lamps are not those that were baked.
 
     Raises
     ------
     ChangedSceneError
     """
-    if len(scene.meshes) != len(kept.shapes):
+    lamps = kept.patches.emitters.lamps
+    if len(scene.lamps) != len(lamps):
+        raise ChangedSceneError("Lamps were added, removed or hidden since the bake; bake again")
+    if len(scene.meshes) + len(lamps) != len(kept.shapes):
         raise ChangedSceneError("Objects were added, removed or hidden since the bake; bake again")
-    for mesh, shape in zip(scene.meshes, kept.shapes, strict=True):
-        if shape_of(mesh) != shape:
-            raise ChangedSceneError(f'"{mesh.name}" was changed or moved since the bake; bake again')
+    for part, shape, before in zip((*scene.meshes, *scene.lamps), shapes_of(scene), kept.shapes, strict=True):
+        if shape != before:
+            raise ChangedSceneError(f'"{part.name}" was changed or moved since the bake; bake again')
 
 
 def check_sources(kept: KeptTransport, scene: Scene, surfaces: Surfaces) -> None:
@@ -204,5 +218,8 @@ def check_sources(kept: KeptTransport, scene: Scene, surfaces: Surfaces) -> None
     if len(new):
         name = scene.meshes[surfaces.mesh_of_triangle[new[0]]].name
         raise ChangedSceneError(f'"{name}" gave no light where it does now when the scene was baked; bake again')
+    for lamp, earlier in zip(surfaces.lamps, before.lamps, strict=True):
+        if lamp.strength.any() and not earlier.strength.any():
+            raise ChangedSceneError(f'"{lamp.name}" gave no light when the scene was baked; bake again')
     if surfaces.world.any() and not before.world.any():
         raise ChangedSceneError("The World gave no light when the scene was baked; bake again")

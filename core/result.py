@@ -60,9 +60,9 @@ class BakeResult:
     (total), `rays_by_kind` (`walks` that find the lit sides, `form_factors`, `patches` for covers and direct light,
     `gather`), `seconds` (by stage, with `total`), `seconds_in_ray_library` (summed over `threads`), `iterations`,
     `residual`, `converged`, `estimated_error` (relative RMS), `form_factor_standard_error` (of a form factor as large
-    as the threshold, in the median), `energy` (`emitted`, `from_world`, `reflected`, `absorbed`, `escaped` in W, and
-    `imbalance`), `minimum_size`, `minimum_face_size` (None where faces are not split), `rounds` (a list, one entry a
-    refinement round), `ended` (why refinement ended), `settings` and `warnings` (a list of sentences).
+    as the threshold, in the median), `energy` (`emitted`, `from_world`, `from_lamps`, `reflected`, `absorbed`,
+    `escaped` in W, and `imbalance`), `minimum_size`, `minimum_face_size` (None where faces are not split), `rounds` (a
+    list, one entry a refinement round), `ended` (why refinement ended), `settings` and `warnings` (sentences).
 
     `kept` is what `relight` needs, or why it is not there; None where it was not asked for.
     """

@@ -29,6 +29,9 @@ LATTICE_ERROR = 0.8
 """Standard error of a share V of a triangle found by n points of a lattice, over sqrt(V (1 - V)) n**-0.75. Shares cut
 off by straight lines in any place, found by 8 to 1,024 points, have 0.7 to 0.9 of it (tests/core/test_direct.py)."""
 
+RAY_COUNTS = np.array([1, 2, 3, *(n << k for k in range(1, 12) for n in (2, 3))])
+"""So many rays a part of an emitter may get: all that get the same number can be treated at once."""
+
 Singles = NDArray[np.float32]
 
 
@@ -98,6 +101,12 @@ def triangle_lattice(count: int, shift: Floats) -> Floats:
     away = np.sqrt((index + shift[0]) / count)
     across = np.mod(index * GOLDEN + shift[1], 1.0)
     return np.stack([1.0 - away, away * (1.0 - across), away * across], axis=1)
+
+
+def ray_counts(wanted: Floats) -> Ints:
+    """Those of `RAY_COUNTS` that are nearest in ratio to the numbers wanted."""
+    counts: Ints = RAY_COUNTS[np.searchsorted(np.sqrt(RAY_COUNTS[1:] * RAY_COUNTS[:-1]), wanted)]
+    return counts
 
 
 def hemisphere(square: Floats) -> Floats:

@@ -45,6 +45,109 @@ class SurfaceMesh:
 
 
 @dataclass(frozen=True, eq=False)
+class Cone:
+    """How a spot's light fades away from its axis, as Cycles has it.
+
+    Attributes
+    ----------
+    inverse : (3, 3) float
+        Takes directions of the world to the lamp's own space, in which it shines along -z.
+    cosine : float
+        Of half the angle of the cone, outside of which it is dark.
+    blend : float, 0..1
+        Share of the cone, by cosines, over which light fades in.
+    """
+
+    inverse: Floats
+    cosine: float
+    blend: float
+
+
+@dataclass(frozen=True, eq=False)
+class PointLamp:
+    """A lamp that shines to all sides, or as a spot. Rays do not meet it.
+
+    Attributes
+    ----------
+    name : str
+    centre : (3,) float, scene units
+    radius : float, scene units
+        0 casts hard shadows.
+    strength : (3,) float, W sr^-1
+        Radiant intensity in linear RGB, where the cone takes nothing away.
+    soft : bool
+        Whether it is a disk that faces whoever looks at it, in place of a sphere.
+    cone : Cone or None
+    shadow : bool
+        Whether surfaces hide it.
+    """
+
+    name: str
+    centre: Floats
+    radius: float
+    strength: Floats
+    soft: bool = False
+    cone: Cone | None = None
+    shadow: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class AreaLamp:
+    """A rectangle or an ellipse whose front shines. Rays do not meet it.
+
+    Attributes
+    ----------
+    name : str
+    centre : (3,) float, scene units
+    half_axes : (2, 3) float, scene units
+        From the centre to the middles of two neighbouring edges.
+    normal : (3,) float, unit
+        Where it shines to.
+    strength : (3,) float, W m^-2 sr^-1
+        Radiance, in linear RGB, that gives the lamp's power were it even to all sides.
+    elliptic : bool
+    spread : float, radians
+        Angle of the cone that its light stays in; pi for a lamp that looks equally bright from all sides.
+    shadow : bool
+    """
+
+    name: str
+    centre: Floats
+    half_axes: Floats
+    normal: Floats
+    strength: Floats
+    elliptic: bool = False
+    spread: float = np.pi
+    shadow: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class SunLamp:
+    """A disk so far away that it is seen in the same direction from everywhere.
+
+    Attributes
+    ----------
+    name : str
+    direction : (3,) float, unit
+        In which its light travels.
+    angle : float, radians
+        That its diameter is seen at; 0 casts hard shadows.
+    strength : (3,) float, W m^-2
+        Irradiance of a surface that faces it, in linear RGB.
+    shadow : bool
+    """
+
+    name: str
+    direction: Floats
+    angle: float
+    strength: Floats
+    shadow: bool = True
+
+
+Lamp = PointLamp | AreaLamp | SunLamp
+
+
+@dataclass(frozen=True, eq=False)
 class Scene:
     """Everything that takes part in the light transport.
 
@@ -54,10 +157,13 @@ class Scene:
         In a fixed order; results refer to them by index.
     world : (3,) float, W m^-2 sr^-1
         Radiance that a ray meets when it leaves the scene.
+    lamps : tuple of Lamp
+        In a fixed order.
     """
 
     meshes: tuple[SurfaceMesh, ...]
     world: Floats
+    lamps: tuple[Lamp, ...] = ()
 
 
 def surface_mesh(

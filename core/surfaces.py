@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
 from .geometry import lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
-from .scene import Floats, Ints, Scene, SurfaceMesh
+from .scene import Floats, Ints, Lamp, Scene, SurfaceMesh
 
 SMALLEST_AREA = 1e-14
 """Triangles with less than this share of the squared extent of the scene have no area that float32 rays could meet."""
@@ -49,6 +49,8 @@ class Surfaces:
     extent : float
         Largest edge of the bounding box.
     world : (3,) float
+    lamps : tuple of Lamp
+        No strength is negative.
     warnings : tuple of str
         What is wrong with the triangles, and
     colour_warnings : tuple of str
@@ -71,6 +73,7 @@ class Surfaces:
     baked: NDArray[np.bool_]
     extent: float
     world: Floats
+    lamps: tuple[Lamp, ...]
     warnings: tuple[str, ...]
     colour_warnings: tuple[str, ...]
 
@@ -166,10 +169,17 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
     emission = joined([mesh.emission for mesh in scene.meshes])
     return {
         "reflectance": np.clip(reflectance, 0.0, 1.0),
-        "emission": np.maximum(np.nan_to_num(emission, posinf=0.0), 0.0),
-        "world": np.maximum(np.nan_to_num(np.asarray(scene.world, dtype=np.float64), posinf=0.0), 0.0),
+        "emission": _not_negative(emission),
+        "world": _not_negative(scene.world),
+        "lamps": tuple(replace(lamp, strength=_not_negative(lamp.strength)) for lamp in scene.lamps),
         "colour_warnings": tuple(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names),
     }
+
+
+def _not_negative(light: Floats) -> Floats:
+    """Light that is a finite number, 0 where it was none or negative."""
+    sound: Floats = np.maximum(np.nan_to_num(np.asarray(light, dtype=np.float64), posinf=0.0), 0.0)
+    return sound
 
 
 def _finite(vertices: Floats) -> Floats:

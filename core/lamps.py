@@ -1,0 +1,295 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Direct light of lamps: what each would send a receiver unoccluded, times the visible share of its shape.
+
+To a receiver every lamp is a flat shape: a sphere is the disk in which its tangents touch it, a sun is a disk at a
+distance of 1. Where the light of a shape has a closed form, it is taken; elsewhere many places of the shape are added
+up. Shadow rays go to a few of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .direct_light import DirectLight
+from .form_factors import point_to_triangle
+from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
+from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, SunLamp
+from .visibility import OFFSET, RayScene
+
+PLACES = 256
+"""Places of a lamp that are added up where its light has no closed form. A straight edge, such as the horizon's, cuts
+off a share that is wrong by 0.8 * 0.5 * 256**-0.75 = 0.6% of the lamp (`LATTICE_ERROR`)."""
+
+PLACES_AT_ONCE = 2**17
+"""Receivers times places whose working arrays are in memory at once."""
+
+BEYOND = 2.0
+"""Length of a ray to a sun in extents of the scene, whose diagonal is 1.73 of them."""
+
+CLOSEST = 1.001
+"""Radii from a sphere's middle at which a receiver inside sees it: just outside, where half of all it sees shines."""
+
+ROUNDING = 1e-6
+"""By which the edge of a beam is wider when receivers are chosen, radians: more than arccos loses near 1."""
+
+TINY = np.finfo(np.float64).tiny
+
+
+@dataclass(frozen=True, eq=False)
+class _Shapes:
+    """A lamp as each of n receivers sees it.
+
+    Attributes
+    ----------
+    way : (n, 3) float
+        From the receivers to the middle: scene units, or a length of 1 to a sun.
+    half_axes : (n, 2, 3) float
+    normals : (n, 3) float, unit
+        Where the shape shines to.
+    weight : (n,) float
+        Its area times its radiance, for a strength of 1.
+    """
+
+    way: Floats
+    half_axes: Floats
+    normals: Floats
+    weight: Floats
+
+
+def lamp_light(
+    lamps: tuple[Lamp, ...],
+    luminance: Floats,
+    first_number: int,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    keys: Ints,
+    shadow_rays: int,
+    seed: int,
+) -> tuple[DirectLight, Floats]:
+    """Direct light of lamps at points.
+
+    Parameters
+    ----------
+    luminance : (l,) float
+        Of the lamps' strengths.
+    first_number : int
+        The number of the first lamp as an emitter.
+    points, normals, lift : (n, 3) float
+        Receivers, the axes of their hemispheres, and the sides of the true surface.
+    keys : (n,) int
+        Numbers of the receivers, for their sampling patterns.
+    shadow_rays : int
+        Rays each receiver spreads over all lamps; each that it would see gets one at least.
+
+    Returns
+    -------
+    light : DirectLight
+    uncertainty : (n,) float, W m^-2 sr^-1
+        Standard error of its luminance, were the rays independent.
+    """
+    count = len(points)
+    whole = np.stack([unoccluded(lamp, points, normals) for lamp in lamps])
+    bright = whole * luminance[:, None]
+    wanted = ray_counts(shadow_rays * bright / np.maximum(bright.sum(axis=0), TINY))
+    shifts = hashed(keys, 2, seed)
+    entries, variance = [DirectLight.none(count)], np.zeros(count)
+    for number, lamp in enumerate(lamps):
+        some = np.flatnonzero(whole[number])
+        rays_of = np.ones_like(some) if _is_sharp(lamp) else wanted[number, some]
+        visible = np.ones(len(some))
+        for rays_each in np.unique(rays_of) if lamp.shadow else ():
+            same = np.flatnonzero(rays_of == rays_each)
+            size = PLACES_AT_ONCE // int(rays_each)
+            for part in (same[k : k + size] for k in range(0, len(same), size)):
+                at = some[part]
+                ways = _ways(lamp, points[at], int(rays_each), shifts[at])
+                visible[part] = _visible_share(lamp, rays, points[at], normals[at], lift[at], ways)
+        doubt = visible * (1.0 - visible) * rays_of**-1.5
+        variance[some] += LATTICE_ERROR**2 * doubt * bright[number, some] ** 2
+        emitter = np.full(len(some), first_number + number)
+        entries.append(DirectLight.of(count, some, emitter, whole[number, some] * visible))
+    return DirectLight.joined(entries), np.sqrt(variance)
+
+
+def unoccluded(lamp: Lamp, points: Floats, normals: Floats) -> Floats:
+    """Irradiance over pi for a strength of 1, were nothing in the way, (n,).
+
+    Parameters
+    ----------
+    points, normals : (n, 3) float
+    """
+    shapes = _shapes_of(lamp, points)
+    height = np.einsum("nx,nx->n", shapes.way, normals)
+    reach = np.sqrt((np.einsum("nkx,nx->nk", shapes.half_axes, normals) ** 2).sum(axis=1))
+    light = np.zeros(len(points))
+    if isinstance(lamp, AreaLamp):
+        # The corner of a rectangle reaches farther than the rim of its ellipse.
+        seen = (height + np.sqrt(2.0) * reach > 0.0) & (np.einsum("nx,nx->n", shapes.way, shapes.normals) < 0.0)
+        summed = np.flatnonzero(seen)
+        if not lamp.elliptic and lamp.spread >= np.pi:
+            corners = _triangles_of(lamp)
+            light[summed] = point_to_triangle(points[summed, None], normals[summed, None], corners).sum(axis=1)
+            return light
+    else:
+        summed = np.flatnonzero(height + reach > 0.0)
+        if isinstance(lamp, SunLamp) or lamp.cone is None:
+            # A disk that faces its receiver, seen whole: E = pi L sin^2 alpha cos theta.
+            square = (shapes.way**2).sum(axis=1)
+            radius_square = (shapes.half_axes[:, 0] ** 2).sum(axis=1)
+            above = np.flatnonzero(height >= reach)
+            facing = shapes.weight[above] / (square + radius_square)[above]
+            light[above] = facing * height[above] / np.sqrt(square[above]) / np.pi
+            summed = summed[height[summed] < reach[summed]]
+    summed = summed[_in_beam(lamp, points[summed])]
+    places = 1 if _is_sharp(lamp) else PLACES
+    size = PLACES_AT_ONCE // places
+    for part in (summed[k : k + size] for k in range(0, len(summed), size)):
+        ways = _ways(lamp, points[part], places, np.full((len(part), 2), 0.5))
+        kernel = _kernel(lamp, shapes.normals[part], normals[part], ways)
+        light[part] = shapes.weight[part] * kernel.mean(axis=1) / np.pi
+    return light
+
+
+def _is_sharp(lamp: Lamp) -> bool:
+    """Whether it is a point, all of which one ray sees."""
+    if isinstance(lamp, AreaLamp):
+        return False
+    return (lamp.angle if isinstance(lamp, SunLamp) else lamp.radius) == 0.0
+
+
+def _shapes_of(lamp: Lamp, points: Floats) -> _Shapes:
+    count = len(points)
+    if isinstance(lamp, AreaLamp):
+        area = (np.pi if lamp.elliptic else 4.0) * np.linalg.norm(np.cross(*lamp.half_axes))
+        return _Shapes(
+            lamp.centre - points,
+            np.broadcast_to(lamp.half_axes, (count, 2, 3)),
+            np.broadcast_to(lamp.normal, (count, 3)),
+            np.full(count, area),
+        )
+    if isinstance(lamp, SunLamp):
+        way = np.broadcast_to(-lamp.direction, (count, 3))
+        radius, weight = np.full(count, np.tan(lamp.angle / 2.0)), np.full(count, np.cos(lamp.angle / 2.0) ** -2.0)
+    else:
+        way = lamp.centre - points
+        radius, weight = np.full(count, lamp.radius), np.ones(count)
+        if not lamp.soft and lamp.radius > 0.0:
+            distance = np.maximum(np.linalg.norm(way, axis=1), CLOSEST * lamp.radius)
+            weight = 1.0 - (lamp.radius / distance) ** 2
+            way, radius = way * weight[:, None], radius * np.sqrt(weight)
+    toward = way / np.maximum(np.linalg.norm(way, axis=1, keepdims=True), TINY)
+    across = frames(toward, np.zeros(count))[:, :2].astype(np.float64)
+    return _Shapes(way, across * radius[:, None, None], -toward, weight)
+
+
+def _triangles_of(lamp: AreaLamp) -> Floats:
+    """The two halves of a rectangle, (2, 3, 3)."""
+    u, v = lamp.half_axes
+    a, b, c, d = (lamp.centre + x * u + y * v for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    return np.array([(a, b, c), (a, c, d)])
+
+
+def _ways(lamp: Lamp, points: Floats, count: int, shifts: Floats) -> Floats:
+    """From receivers to so many places spread evenly over the shape that they see, (n, count, 3).
+
+    Parameters
+    ----------
+    shifts : (n, 2) float, 0..1
+        Of the lattice.
+    """
+    shapes = _shapes_of(lamp, points)
+    index = np.arange(count)
+    one = (index + shifts[:, :1]) / count
+    other = np.mod(index * GOLDEN + shifts[:, 1:], 1.0)
+    if isinstance(lamp, AreaLamp) and not lamp.elliptic:
+        x, y = 2.0 * one - 1.0, 2.0 * other - 1.0
+    else:
+        away, turn = np.sqrt(one), 2.0 * np.pi * other
+        x, y = away * np.cos(turn), away * np.sin(turn)
+    ways: Floats = shapes.way[:, None] + np.stack([x, y], axis=2) @ shapes.half_axes
+    return ways
+
+
+def _kernel(lamp: Lamp, facing: Floats, normals: Floats, ways: Floats) -> Floats:
+    """What places send for their share of the area and a radiance of 1, (n, count).
+
+    Parameters
+    ----------
+    facing : (n, 3) float, unit
+        Where the shape shines to.
+    ways : (n, count, 3) float
+    """
+    height = np.maximum(np.einsum("nrx,nx->nr", ways, normals), 0.0)
+    front = np.maximum(-np.einsum("nrx,nx->nr", ways, facing), 0.0)
+    square = np.maximum(np.einsum("nrx,nrx->nr", ways, ways), TINY)
+    kernel: Floats = height * front / (square * square)
+    if isinstance(lamp, PointLamp) and lamp.cone is not None:
+        kernel *= _in_cone(lamp.cone, -ways)
+    if isinstance(lamp, AreaLamp) and lamp.spread < np.pi:
+        half = lamp.spread / 2.0
+        tangent = np.sqrt(np.maximum(square - front**2, 0.0)) / np.maximum(front, TINY)
+        kernel *= np.maximum(np.tan(half) - tangent, 0.0) / (np.tan(half) - half)
+    return kernel
+
+
+def _in_beam(lamp: Lamp, points: Floats) -> NDArray[np.bool_]:
+    """Whether points may get light of a spot or of an area lamp that does not shine to all sides, (n,)."""
+    if isinstance(lamp, PointLamp) and lamp.cone is not None:
+        local = (points - lamp.centre) @ lamp.cone.inverse.T
+        distance = np.maximum(np.linalg.norm(local, axis=1), TINY)
+        wide = np.arcsin(np.minimum(lamp.radius * np.linalg.norm(lamp.cone.inverse, 2) / distance, 1.0))
+        away = np.arccos(np.clip(-local[:, 2] / distance, -1.0, 1.0))
+        return np.asarray(away <= np.arccos(lamp.cone.cosine) + wide + ROUNDING)
+    if isinstance(lamp, AreaLamp) and lamp.spread < np.pi:
+        way = points - lamp.centre
+        depth = way @ lamp.normal
+        aside = np.linalg.norm(way - depth[:, None] * lamp.normal, axis=1)
+        reach = np.linalg.norm(lamp.half_axes, axis=1).sum()
+        return np.asarray(aside <= (depth * np.tan(lamp.spread / 2.0) + reach) * (1.0 + ROUNDING))
+    return np.ones(len(points), dtype=bool)
+
+
+def _in_cone(cone: Cone, directions: Floats) -> Floats:
+    """Share of a spot's light that leaves in directions (n, r, 3) of any length, (n, r)."""
+    local = directions @ cone.inverse.T
+    along = -local[..., 2] / np.maximum(np.linalg.norm(local, axis=2), TINY)
+    inside = (along - cone.cosine) / max((1.0 - cone.cosine) * cone.blend, 1e-9)
+    step = np.clip(inside, 0.0, 1.0)
+    share: Floats = step * step * (3.0 - 2.0 * step)
+    return share
+
+
+def _visible_share(
+    lamp: Lamp, rays: RayScene, points: Floats, normals: Floats, lift: Floats, ways: Floats
+) -> NDArray[np.float64]:
+    """Share of a lamp's light that comes through, by rays to places of it, (n,).
+
+    Parameters
+    ----------
+    ways : (n, r, 3) float
+        To the places.
+    """
+    facing = _shapes_of(lamp, points).normals
+    origins, back = rays.lifted(points, lift)
+    if isinstance(lamp, SunLamp):
+        local = ways * (BEYOND / np.linalg.norm(ways, axis=2, keepdims=True))
+    else:
+        # Off the lamp, which may lie in a ceiling's plane.
+        local = ways * rays.scale + (back + OFFSET * facing)[:, None]
+    toward: Singles = local.astype(np.float32)
+    kernel = _kernel(lamp, facing, normals, ways)
+    # What a smooth shading normal sees below its face is dark.
+    seen = np.einsum("nrx,nx->nr", local, lift) > -OFFSET
+    ask = np.flatnonzero((seen & (kernel > 0.0)).any(axis=1))
+    seen[ask] &= rays.visible(origins[ask], toward[ask])
+    tried = kernel.sum(axis=1)
+    # A few places may all miss what little is above the horizon: then each counts alike.
+    kernel[tried <= 0.0] = 1.0
+    share: Floats = (kernel * seen).sum(axis=1) / kernel.sum(axis=1)
+    return share
