@@ -10,8 +10,9 @@ import bpy
 import numpy as np
 
 from ..core.errors import NothingToBakeError
-from ..core.scene import Floats, Scene, SurfaceMesh
+from ..core.scene import Floats, Lamp, Scene, SurfaceMesh
 from .display import is_display
+from .lamps import lamp_of
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
 from .materials import Surface, material_surface, world_radiance
 from .participants import Participants, shown_as_rendered
@@ -109,7 +110,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
     warnings += reader.warnings()
     warnings += [f'World "{context.scene.world.name}": {note}' for note in notes]
     return Extraction(
-        Scene(tuple(reader.meshes), world),
+        Scene(tuple(reader.meshes), world, tuple(reader.lamps)),
         targets,
         tuple(warnings),
         context.scene.session_uid,
@@ -204,13 +205,15 @@ class _Reader:
         self._local_meshes: dict[int, LocalMesh | None] = {}
         self._surfaces: dict[Any, Surface] = {}
         self._users_of_note: dict[tuple[str, str], dict[str, None]] = {}
-        self._left_out: dict[str, dict[str, None]] = {}
+        self._left_out: dict[str, None] = {}
+        self._users_of_lamp_note: dict[str, dict[str, None]] = {}
         self.meshes: list[SurfaceMesh] = []
+        self.lamps: list[Lamp] = []
         self.targets: list[Target] = []
         self.without_faces: set[bpy.types.Object] = set()
 
     def read(self) -> None:
-        """Fill `meshes` and `targets`, in an order that does not depend on how the graph was built."""
+        """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
         entries = sorted(self._entries(), key=lambda entry: entry[0])
         for _, original, baked, local, materials, matrix in entries:
             self._add(original, baked, local, materials, matrix)
@@ -221,22 +224,26 @@ class _Reader:
             f'Material "{material}" of {_names(users)}: {note}'
             for (material, note), users in self._users_of_note.items()
         ]
-        for kind, names in self._left_out.items():
-            if kind == "LIGHT":
-                why = "lamps are not supported yet; give a mesh an emission instead"
-            else:
-                why = "only objects that render as meshes take part"
-            sentences.append(f"{_names(names, most=None)} left out: {why}")
+        sentences += [f"Lamp {_names(users)}: {note}" for note, users in self._users_of_lamp_note.items()]
+        if self._left_out:
+            names = _names(self._left_out, most=None)
+            sentences.append(f"{names} left out: only objects that render as meshes take part")
         return sentences
 
     def _entries(self) -> Iterator[tuple[Any, ...]]:
+        lamps: list[tuple[Any, Lamp | None]] = []
         for instance in self._depsgraph.object_instances:
             if not self._participants.include(instance):
                 continue
             obj = instance.object
             original = obj.original
-            if obj.type in _UNSUPPORTED or obj.type == "LIGHT":
-                self._left_out.setdefault(obj.type, {})[original.name] = None
+            if obj.type in _UNSUPPORTED:
+                self._left_out[original.name] = None
+            parent = instance.parent.original.name_full if instance.is_instance else ""
+            order = (original.name_full, parent, tuple(instance.persistent_id) if instance.is_instance else ())
+            matrix = np.array(instance.matrix_world, dtype=np.float64)
+            if obj.type == "LIGHT":
+                lamps.append((order, self._lamp(obj, matrix)))
             if obj.type != "MESH":
                 continue
             local = self._local_mesh(obj)
@@ -245,10 +252,14 @@ class _Reader:
                 if baked:
                     self.without_faces.add(original)
                 continue
-            parent = instance.parent.original.name_full if instance.is_instance else ""
-            order = (original.name_full, parent, tuple(instance.persistent_id) if instance.is_instance else ())
-            matrix = np.array(instance.matrix_world, dtype=np.float64)
             yield order, original, baked, local, _slot_materials(obj, local), matrix
+        self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
+
+    def _lamp(self, obj: bpy.types.Object, matrix: Floats) -> Lamp | None:
+        lamp, notes = lamp_of(obj, matrix)
+        for note in notes:
+            self._users_of_lamp_note.setdefault(note, {})[obj.original.name] = None
+        return lamp
 
     def _local_mesh(self, obj: bpy.types.Object) -> LocalMesh | None:
         key = obj.data.as_pointer()

@@ -62,8 +62,8 @@ def _surface(reflectance: object = 0.0, emission: object = 0.0, notes: Iterable[
     return Surface(colour(reflectance), colour(emission), tuple(notes))
 
 
-def uses_nodes(owner: bpy.types.Material | bpy.types.World) -> bool:
-    """Return whether a material or world is made of nodes."""
+def uses_nodes(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) -> bool:
+    """Return whether a material, world or lamp is made of nodes."""
     # From Blender 5.0 on nodes are always used, and asking warns that the property goes away.
     return owner.node_tree is not None and (bpy.app.version >= (5, 0, 0) or owner.use_nodes)
 
@@ -102,6 +102,20 @@ def world_radiance(world: bpy.types.World | None) -> tuple[Colour, tuple[str, ..
     if shader.notes:
         return np.zeros(3), tuple(f"{note.split(';')[0]}; the world was left dark" for note in shader.notes)
     return shader.emission, ()
+
+
+def lamp_factor(light: bpy.types.Light) -> tuple[Colour, tuple[str, ...]]:
+    """Return what a lamp's nodes multiply its colour and power by, and what was skipped of them.
+
+    Returns
+    -------
+    factor : (3,) float
+    notes : tuple of str
+    """
+    if not uses_nodes(light):
+        return np.ones(3), ()
+    shader = _ShaderReader(light.node_tree).surface()
+    return shader.emission, shader.notes
 
 
 class _ShaderReader:

@@ -154,8 +154,8 @@ class RADIOSITY_OT_relight(bpy.types.Operator):
     bl_idname = "radiosity.relight"
     bl_label = "Relight"
     bl_description = (
-        "Give the last bake the colours that materials and World have now, in a small share of its time. "
-        "Emission, its strength and base colours may change; for everything else, bake again"
+        "Give the last bake the colours that lamps, materials and World have now, in a small share of its time. "
+        "The lamps' powers, emission and base colours may change; for everything else, bake again"
     )
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
 

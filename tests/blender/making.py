@@ -86,13 +86,13 @@ def node_material(name, node_type, **inputs):
 
 
 def node_tree(owner):
-    """Return the emptied node tree of a material or world, with an output node in it."""
+    """Return the emptied node tree of a material, world or lamp, with an output node in it."""
     if bpy.app.version < (5, 0, 0):
         owner.use_nodes = True
     tree = owner.node_tree
     tree.nodes.clear()
-    world = isinstance(owner, bpy.types.World)
-    tree.nodes.new("ShaderNodeOutputWorld" if world else "ShaderNodeOutputMaterial")
+    kinds = {bpy.types.World: "World", bpy.types.Light: "Light", bpy.types.Material: "Material"}
+    tree.nodes.new(next(f"ShaderNodeOutput{name}" for kind, name in kinds.items() if isinstance(owner, kind)))
     return tree
 
 

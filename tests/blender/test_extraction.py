@@ -312,13 +312,6 @@ def test_shared_textures_are_named_once_with_their_material_and_objects():
         assert word in warning
 
 
-def test_every_lamp_is_named_as_left_out():
-    for name in ("Key", "Fill"):
-        add_object(name, bpy.data.lights.new(name, "POINT"))
-    (warning,) = extracted(add_cube()).warnings
-    assert '"Key"' in warning and '"Fill"' in warning and "not supported" in warning
-
-
 def test_the_order_of_the_meshes_does_not_depend_on_when_they_were_made():
     for name in ("C", "A", "B"):
         add_plane(name)
