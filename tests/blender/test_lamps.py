@@ -114,6 +114,27 @@ def by_us(floor):
     ids=lambda lamp: "-".join(str(value) for value in lamp.values()),
 )
 def test_a_room_is_lit_as_in_cycles(lamp):
+    check_against_cycles(lamp)
+
+
+@pytest.mark.skipif("normalize" not in bpy.types.Light.bl_rna.properties, reason="lamps of this Blender have none of them")
+@pytest.mark.parametrize(
+    "lamp",
+    [
+        {"kind": "POINT", "shadow_soft_size": 0.3, "use_soft_falloff": False, "normalize": False},
+        {"kind": "SPOT", "shadow_soft_size": 0.2, "spot_size": 1.4, "normalize": False},
+        {"kind": "AREA", "shape": "DISK", "size": 0.5, "spread": 2.0, "normalize": False},
+        {"kind": "SUN", "angle": 0.3, "normalize": False},
+        {"kind": "AREA", "exposure": 1.5},
+        {"kind": "POINT", "use_temperature": True, "temperature": 4000.0, "color": (0.5, 1.0, 1.0)},
+    ],
+    ids=lambda lamp: "-".join(str(value) for value in lamp.values()),
+)
+def test_what_newer_versions_have_lights_a_room_as_in_cycles(lamp):
+    check_against_cycles(lamp)
+
+
+def check_against_cycles(lamp):
     floor = add_room()
     add_lamp(**lamp, energy=10.0)
     select_also(floor)
