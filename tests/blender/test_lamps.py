@@ -117,7 +117,7 @@ def test_a_room_is_lit_as_in_cycles(lamp):
     check_against_cycles(lamp)
 
 
-@pytest.mark.skipif("normalize" not in bpy.types.Light.bl_rna.properties, reason="lamps of this Blender have none of them")
+@pytest.mark.skipif("normalize" not in bpy.types.Light.bl_rna.properties, reason="lamps have none of them here")
 @pytest.mark.parametrize(
     "lamp",
     [
