@@ -35,6 +35,12 @@ LEAST_VISITS = 3
 LEAST_SHARE = 0.01
 """Share of the visits to be expected by its area, and of those to its front, that the back of a lit shell must get."""
 
+LEAST_INDOORS = 0.8
+"""Share of the light from the outside of a lamp in a room that meets something: the room may have a window."""
+
+AGAINST_A_WALL = 0.01
+"""Share of a room's extent by which furniture may stick out of it, or only touch it from within."""
+
 MOST_HOLDING = 1000
 """Of the shells that emit, so many of the largest are asked whether they hold another; smaller ones are lamps."""
 
@@ -46,11 +52,12 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     """Whether light reaches the front and the back of each shell, (shells, 2) bool."""
     shells = len(surfaces.closed)
     # The inside is the back, unless the normals look inward.
-    lamp, inside = _lamps(surfaces), (signed_volumes(surfaces) >= 0.0).astype(int)
+    inside = (signed_volumes(surfaces) >= 0.0).astype(int)
     walks = _from_emitters(surfaces, rays, seed)
     left = surfaces.shell_of_triangle[walks.triangle]
-    outward = np.flatnonzero(~lamp[left] | (walks.back != inside[left]))
-    visits = _visits(surfaces, rays, walks.taken(outward), seed)
+    is_outward = walks.back != inside[left]
+    lamp = _lamps(surfaces) & _is_indoors(surfaces, rays, walks.taken(np.flatnonzero(is_outward)))
+    visits = _visits(surfaces, rays, walks.taken(np.flatnonzero(~lamp[left] | is_outward)), seed)
     if surfaces.world.any():
         visits += _visits(surfaces, rays, _from_world(surfaces, rays, seed), seed + 7)
     shining = [source for source in surfaces.lamps if source.strength.any()]
@@ -198,7 +205,7 @@ def _lamps(surfaces: Surfaces) -> NDArray[np.bool_]:
 
     Both sides of an emitter glow, so the inside of a lamp's housing would be the brightest place of a room; where the
     housing lies flush in a ceiling it would light the ceiling's other side. A room that emits holds other shells, or is
-    the largest shell there is.
+    the largest shell there is, or stands in the open.
     """
     shell, count = surfaces.shell_of_triangle, len(surfaces.closed)
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
@@ -212,13 +219,27 @@ def _lamps(surfaces: Surfaces) -> NDArray[np.bool_]:
     order = np.argsort(low[:, 0], kind="stable")
     largest = np.flatnonzero(lamp)
     largest = largest[np.argsort(-extent[largest], kind="stable")[:MOST_HOLDING]]
-    first = np.searchsorted(low[order, 0], low[:, 0], side="left")
+    slack = AGAINST_A_WALL * extent[:, None]
+    first = np.searchsorted(low[order, 0], (low - slack)[:, 0], side="left")
     last = np.searchsorted(low[order, 0], high[:, 0], side="right")
+    size = (high - low + slack).prod(axis=1)
     for candidate in largest:
         near = order[first[candidate] : last[candidate]]
-        inside = (low[near] > low[candidate]).all(axis=1) & (high[near] < high[candidate]).all(axis=1)
-        lamp[candidate] = not inside.any()
+        inside = (low[near] >= (low - slack)[candidate]).all(axis=1) & (high[near] <= (high + slack)[candidate]).all(
+            axis=1
+        )
+        # A second lamp in the same place is none that it holds.
+        lamp[candidate] = not np.any(inside & (size[near] < 0.5 * size[candidate]))
     return lamp
+
+
+def _is_indoors(surfaces: Surfaces, rays: RayScene, walks: Walks) -> NDArray[np.bool_]:
+    """Shells whose light outward meets something nearly always, (shells,), by the first step of walks that go there."""
+    hits = rays.first_hits(rays.local(walks.origin), walks.direction.astype(np.float32))
+    shell, count = surfaces.shell_of_triangle[walks.triangle], len(surfaces.closed)
+    met = np.bincount(shell, weights=hits.triangle >= 0, minlength=count)
+    result: NDArray[np.bool_] = met >= LEAST_INDOORS * np.bincount(shell, minlength=count)
+    return result
 
 
 def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:

@@ -87,13 +87,18 @@ def test_a_lamp_in_a_housing_is_dark_inside_even_where_it_cuts_the_ceiling(turne
 
 
 def test_a_room_that_glows_itself_is_lit_inside():
-    glowing = replace(ROOM, emission=np.ones_like(ROOM.emission) * (np.arange(len(ROOM.emission)) < 2)[:, None])
+    ceiling = ROOM.vertices[ROOM.triangles][..., 2].min(axis=1) == 2.0
+    glowing = replace(ROOM, emission=np.ones_like(ROOM.emission) * ceiling[:, None])
     assert lit(glowing)["room"] == (True, False)
     outward = flipped(glowing)
     assert lit(outward, block("block", (0.5, 0.5, 0.2), (1, 1, 0.8)))["room"][1]
-    # The floor around the house is larger, but the house holds something.
+    # The floor around the house is larger, but the house holds something, or stands in the open.
     floor = exact.rectangle("ground", (-5, -5, -1), (10, 0, 0), (0, 10, 0), reflectance=0.5)
     assert lit(outward, block("block", (0.5, 0.5, 0.2), (1, 1, 0.8)), floor)["room"][1]
+    assert lit(outward, block("block", (0.5, 0.5, 0.0), (1, 1, 0.8)), floor)["room"][1]
+    assert lit(outward, block("block", (0.0, 0.0, 0.0), (1, 1, 0.8)), floor)["room"][1]
+    assert lit(outward, floor)["room"][1]
+    assert lit(glowing, block("block", (0.5, 0.5, 0.0), (1, 1, 0.8)), floor, world=(0.1, 0.1, 0.1))["room"][0]
 
 
 def test_the_world_lights_a_solid_outside_and_an_open_plane_on_both_sides():
