@@ -16,7 +16,7 @@ from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import cut_receivers, find_cuts
-from .detail import FaceSizes, light_up, light_up_in_detail
+from .detail import FaceSizes, light_up, light_up_in_detail, with_corners_on_outlines
 from .direct import all_emitters
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
@@ -200,6 +200,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
+        shown = with_corners_on_outlines(shown, is_hidden)
         edges = find_cuts(shown.faces, shown.places, shown.gathered.hidden, is_hidden)
         cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
 
@@ -281,9 +282,12 @@ def subdivide(
     """Subdivide by the method asked for; every element that takes part has been traced afterwards."""
     tree, surfaces = transport.tree, transport.surfaces
 
+    wanted = surfaces.baked | surfaces.emission.any(axis=1)
+
     def seeds() -> Ints:
         patches = tree.patches()
-        patches = patches[surfaces.baked[tree.triangle[patches]]]
+        # What emits is needed for the balance, though few rays may meet it.
+        patches = patches[wanted[tree.triangle[patches]]]
         behind = patches[lit[surfaces.shell_of_triangle[tree.triangle[patches]], 1]]
         return np.sort(np.concatenate([2 * patches, 2 * behind + 1]))
 
