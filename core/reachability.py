@@ -56,8 +56,8 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     walks = _from_emitters(surfaces, rays, seed)
     left = surfaces.shell_of_triangle[walks.triangle]
     is_outward = walks.back != inside[left]
-    lamp = _lamps(surfaces) & _is_indoors(surfaces, rays, walks.taken(np.flatnonzero(is_outward)))
-    visits = _visits(surfaces, rays, walks.taken(np.flatnonzero(~lamp[left] | is_outward)), seed)
+    housing = _housings(surfaces) & _is_indoors(surfaces, rays, walks.taken(np.flatnonzero(is_outward)))
+    visits = _visits(surfaces, rays, walks.taken(np.flatnonzero(~housing[left] | is_outward)), seed)
     if surfaces.world.any():
         visits += _visits(surfaces, rays, _from_world(surfaces, rays, seed), seed + 7)
     shining = [source for source in surfaces.lamps if source.strength.any()]
@@ -76,7 +76,7 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     emits = np.bincount(surfaces.shell_of_triangle, weights=surfaces.emission.any(axis=1), minlength=shells) > 0
     lit[emits, 0] = True
     lit[emits & ~surfaces.closed, 1] = True
-    lit[np.flatnonzero(lamp), inside[lamp]] = False
+    lit[np.flatnonzero(housing), inside[housing]] = False
     # A shell that no light reaches at all shows its front, black.
     lit[~lit.any(axis=1), 0] = True
     return lit
@@ -200,7 +200,7 @@ def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
     return result
 
 
-def _lamps(surfaces: Surfaces) -> NDArray[np.bool_]:
+def _housings(surfaces: Surfaces) -> NDArray[np.bool_]:
     """Closed shells that emit somewhere and hold nothing, (shells,): what glows inside, nobody sees.
 
     Both sides of an emitter glow, so the inside of a lamp's housing would be the brightest place of a room; where the
