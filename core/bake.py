@@ -16,7 +16,7 @@ from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import cut_receivers, find_cuts
-from .detail import FaceSizes, light_up, light_up_in_detail, with_corners_on_outlines
+from .detail import FaceSizes, light_up, light_up_in_detail
 from .direct import all_emitters
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
@@ -200,7 +200,6 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
-        shown = with_corners_on_outlines(shown, is_hidden)
         edges = find_cuts(shown.faces, shown.places, shown.gathered.hidden, is_hidden)
         cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
 

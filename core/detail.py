@@ -9,12 +9,12 @@ gathered once is kept, so each round costs its new vertices only.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .cutting import ROUGH_SEARCHES, SECTIONS, IsHidden, crooked_faces, faces_with_feet, find_cuts
+from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error
 from .gather import Gathered
@@ -212,19 +212,6 @@ class _ShownFaces:
         """The faces and their light."""
         (first, kept), (changed, _) = self.parts()
         return first.with_others(kept, changed, self.tree) if self._changed_shells.any() else first
-
-
-def with_corners_on_outlines(lit: Lit, is_hidden: IsHidden) -> Lit:
-    """The same faces, with seen corners that an outline runs through counted as hidden.
-
-    On round numbers vertices come to lie right at an object's foot. What is gathered there is a contact shadow narrower
-    than the faces, as at a cut; hidden, they are cut off, and the faces take the light before the cut.
-    """
-    hidden = lit.gathered.hidden
-    cuts = find_cuts(lit.faces, lit.places, hidden, is_hidden, ROUGH_SEARCHES)
-    at_foot = hidden.copy()
-    at_foot[cuts.seen[cuts.change < SECTIONS**-ROUGH_SEARCHES]] = True
-    return replace(lit, gathered=replace(lit.gathered, hidden=at_foot))
 
 
 def _nodes_with_crooked_cuts(
