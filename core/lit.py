@@ -60,14 +60,16 @@ class Lit:
         )
 
     def noise(self, surfaces: Surfaces) -> float:
-        """Noise of the hemisphere rays over the surface, relative to its light, both as root mean squares.
+        """Noise of the hemisphere rays over the surface that has light, relative to its mean.
 
-        Relative to the mean, a wide dark ground around a room would make any noise in the room look large.
+        With what is black, a wide dark ground around a room would make any noise in the room look large.
         """
         weight = triangle_areas(self.faces.points[self.faces.corners[self.face]]) * self.counted(surfaces)
-        light = float(weight @ ((self.corner_irradiance() @ LUMINANCE) ** 2).mean(axis=1))
-        noise = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
-        return math.sqrt(noise / light) if light > 0.0 else 0.0
+        at_faces = (self.corner_irradiance() @ LUMINANCE).mean(axis=1)
+        weight = weight * (at_faces > 0.0)
+        light = float(weight @ at_faces)
+        square = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
+        return math.sqrt(square * weight.sum()) / light if light > 0.0 else 0.0
 
     def part(self, kept: NDArray[np.bool_]) -> Lit:
         """Some of the faces, (faces,) bool, which share no receiver with the others."""
