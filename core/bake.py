@@ -183,12 +183,13 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     if settings.output == "ORIGINAL":
         shown = light_up_first(input_faces(surfaces))
     else:
+        aside = transport.is_aside()
         sizes = FaceSizes(smallest, finest, finest_cut, most_vertices)
         shown, leaves = light_up_in_detail(
             surfaces,
             lit,
             tree,
-            transport.is_aside().reshape(-1, 2).any(axis=1),
+            aside.reshape(-1, 2).any(axis=1),
             sizes,
             effort.tolerance,
             light_up_first,
@@ -196,8 +197,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             is_hidden,
         )
         if shown.gathered.places.shape[1]:
-            aside = transport.is_aside()[cover.base_of(cells.element)]
-            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, aside)
+            of_cells = aside[cover.base_of(cells.element)]
+            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
         edges = find_cuts(shown.faces, shown.places, shown.gathered.hidden, is_hidden)

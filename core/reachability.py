@@ -151,25 +151,28 @@ def _from_world(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
     """Walks inward from a sphere around the scene: with cosine distribution they cross it evenly from everywhere."""
     drawn = hashed(np.arange(WALKS), 4, seed + 3)
     outward = _even_directions(drawn)
+    middle, radius = _sphere_around(surfaces)
+    outside = np.full(WALKS, -1, dtype=np.int64)
+    origin = middle + radius * outward
+    return Walks(outside, np.zeros(WALKS, dtype=bool), origin, cosine_directions(drawn[:, 2:], -outward))
+
+
+def _sphere_around(surfaces: Surfaces) -> tuple[Floats, float]:
+    """Middle and radius of a sphere that holds all triangles."""
     used = surfaces.points[surfaces.triangles.ravel()]
     low, high = used.min(axis=0), used.max(axis=0)
-    radius = 0.5 * float(np.linalg.norm(high - low)) * 1.01
-    outside = np.full(WALKS, -1, dtype=np.int64)
-    origin = (low + high) / 2.0 + radius * outward
-    return Walks(outside, np.zeros(WALKS, dtype=bool), origin, cosine_directions(drawn[:, 2:], -outward))
+    return (low + high) / 2.0, 0.5 * float(np.linalg.norm(high - low)) * 1.01
 
 
 def _from_lamp(lamp: Lamp, surfaces: Surfaces, rays: RayScene, count: int, seed: int) -> Walks:
     """So many walks from a lamp, in the directions that it shines in."""
     drawn = hashed(np.arange(count), 4, seed)
     if isinstance(lamp, SunLamp):
-        used = surfaces.points[surfaces.triangles.ravel()]
-        low, high = used.min(axis=0), used.max(axis=0)
-        radius = 0.5 * float(np.linalg.norm(high - low)) * 1.01
+        middle, radius = _sphere_around(surfaces)
         direction = np.broadcast_to(lamp.direction, (count, 3))
         across = frames(direction, np.zeros(count))[:, :2].astype(np.float64)
         place = np.einsum("nk,nkx->nx", 2.0 * drawn[:, :2] - 1.0, across)
-        origin = (low + high) / 2.0 + radius * (place - direction)
+        origin = middle + radius * (place - direction)
     elif isinstance(lamp, AreaLamp):
         normal = np.broadcast_to(lamp.normal, (count, 3))
         # A rectangle's corners lie outside of its ellipse, which is no harm here.
@@ -214,10 +217,10 @@ def _housings(surfaces: Surfaces) -> NDArray[np.bool_]:
     np.maximum.at(high, shell, corners.max(axis=1))
     extent = (high - low).max(axis=1)
     emits = np.bincount(shell, weights=surfaces.emission.any(axis=1), minlength=count) > 0
-    lamp: NDArray[np.bool_] = surfaces.closed & emits & (extent < extent.max())
-    # Of the shells that begin between the two ends of a lamp along x, those that end there too in all directions.
+    housing: NDArray[np.bool_] = surfaces.closed & emits & (extent < extent.max())
+    # Of the shells that begin between the two ends of a housing along x, those that end there too in all directions.
     order = np.argsort(low[:, 0], kind="stable")
-    largest = np.flatnonzero(lamp)
+    largest = np.flatnonzero(housing)
     largest = largest[np.argsort(-extent[largest], kind="stable")[:MOST_HOLDING]]
     slack = AGAINST_A_WALL * extent[:, None]
     first = np.searchsorted(low[order, 0], (low - slack)[:, 0], side="left")
@@ -229,8 +232,8 @@ def _housings(surfaces: Surfaces) -> NDArray[np.bool_]:
             axis=1
         )
         # A second lamp in the same place is none that it holds.
-        lamp[candidate] = not np.any(inside & (size[near] < 0.5 * size[candidate]))
-    return lamp
+        housing[candidate] = not np.any(inside & (size[near] < 0.5 * size[candidate]))
+    return housing
 
 
 def _is_indoors(surfaces: Surfaces, rays: RayScene, walks: Walks) -> NDArray[np.bool_]:
