@@ -5,7 +5,7 @@ PYTHON ?= python3
 MAIN := .venv/main/bin/python
 
 .DEFAULT_GOAL := help
-.PHONY: help venv zip demo test test-core test-blender bench compare lint format clean
+.PHONY: help venv zip demo test test-core test-blender bench parity compare lint format clean
 
 help: ## Say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
@@ -37,6 +37,11 @@ endif
 bench: ## Compare with other programs: accuracy, seconds, charts, docs/performance.md
 	@$(PYTHON) -m tools.environments bench
 	@$(MAIN) -m bench $(BENCH)
+
+# make parity PARITY="lamps world_constant" measures some rows again and keeps the others.
+parity: ## Compare with Cycles, feature by feature: docs/parity.md
+	@$(PYTHON) -m tools.environments bench
+	@$(MAIN) -m bench.parity $(PARITY)
 
 compare: ## The paper's table: adaptive against uniform subdivision at the same minimum size
 	@$(PYTHON) -m tools.environments bench

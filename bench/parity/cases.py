@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The list of all cases, in the order in which the page shows them."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+# Files of cases, each a section of the page.
+TOPICS = {
+    "lamps": "Lamps",
+    "world": "World",
+    "materials": "Materials",
+    "geometry": "Geometry",
+    "output": "Output",
+}
+
+SAMPLES = 1024
+
+
+@dataclass(frozen=True)
+class Case:
+    """A feature, and the scene that shows it.
+
+    Attributes
+    ----------
+    name : str
+        By which it is asked for.
+    topic : str
+        A key of `TOPICS`.
+    title : str
+        Of its row.
+    build : callable
+        Builds the scene in an empty file and returns the mesh objects whose light is compared.
+    samples : int
+        Of Cycles, for each face corner and each of two seeds.
+    quantity : str
+        The attribute that is compared: `'Irradiance'` with Cycles' DIFFUSE bake without Color, `'Radiosity'` with the
+        sum of its DIFFUSE bake with Color and its EMIT bake; `'Irradiance Back'` and `'Radiosity Back'` with what
+        Cycles bakes on the same meshes turned over.
+    settings : dict
+        Of `scene.radiosity`, for both bakes of ours.
+    """
+
+    name: str
+    topic: str
+    title: str
+    build: Callable[[], list[Any]]
+    samples: int
+    quantity: str
+    settings: dict[str, Any]
+
+
+_cases: dict[str, Case] = {}
+
+
+def case(
+    title: str, *, samples: int = SAMPLES, quantity: str = "Irradiance", **settings: Any
+) -> Callable[[Callable[[], list[Any]]], Callable[[], list[Any]]]:
+    """Return a decorator that puts the function which builds a scene on the list; its name is the row's."""
+
+    def listed(build: Callable[[], list[Any]]) -> Callable[[], list[Any]]:
+        topic = build.__module__.rpartition(".")[2]
+        if build.__name__ in _cases:
+            raise ValueError(f"There are two cases {build.__name__}")
+        _cases[build.__name__] = Case(build.__name__, topic, title, build, samples, quantity, settings)
+        return build
+
+    return listed
+
+
+def all_cases() -> dict[str, Case]:
+    """Return every case by its name, topic after topic."""
+    for topic in TOPICS:
+        importlib.import_module(f"{__package__}.{topic}")
+    order = list(TOPICS)
+    return dict(sorted(_cases.items(), key=lambda item: order.index(item[1].topic)))
