@@ -23,9 +23,9 @@ INTRODUCTION = (
 COLUMNS = (
     "Cycles and ours are the means over the vertices and the three colours. The difference is the root mean square "
     "over them, relative to that of Cycles' light; noise is that of the reference itself, from two bakes with "
-    "different seeds. A row is met if the difference is at most 2% plus that noise. Vertices on the rim and on the creases of a "
-    "mesh are in the column with rims only: there our light is gathered a little inside the face, while Cycles' rays "
-    "start on the edge."
+    "different seeds. A row is met if the difference is at most 2% plus that noise. Vertices on the rim and on the "
+    "creases of a mesh are in the column with rims only: there our light is gathered a little inside the face, "
+    "while Cycles' rays start on the edge."
 )
 PICTURES = (
     "Pictures: Cycles, path traced and denoised; the scene baked to refined meshes, as its display material shows it; "
