@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from .direct_light import DirectLight
 from .form_factors import above_horizon, heights_of, piece_factor
-from .light_tree import GRAZING, NORMALS_WEIGHT, Cut, LightTree, cut, halved
+from .light_cut import GRAZING, Cut, cut
+from .light_tree import NORMALS_WEIGHT, LightTree, halved
 from .sampling import GOLDEN, LATTICE_ERROR, Singles
 from .scene import Floats, Ints
 from .visibility import OFFSET, RayScene

@@ -9,7 +9,8 @@ import pytest
 from radiosity_bake.core import many_lights
 from radiosity_bake.core.direct import LUMINANCE, all_emitters, direct_light
 from radiosity_bake.core.form_factors import point_to_triangle
-from radiosity_bake.core.light_tree import cut, halved, light_tree
+from radiosity_bake.core.light_cut import cut
+from radiosity_bake.core.light_tree import halved, light_tree
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.surfaces import join
