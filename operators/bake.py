@@ -42,7 +42,7 @@ def bake_objects(
         When `progress` raised it; nothing was changed.
     """
     began = time.perf_counter()
-    extraction = extract(context, objects)
+    extraction = extract(context, objects, settings.output == "REFINED")
     check_storable(extraction, settings.output)
     read = time.perf_counter() - began
     result = _core_bake()(extraction.scene, settings, progress)
@@ -174,7 +174,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         began = time.perf_counter()
         try:
             self._settings = bake_settings(context.scene.radiosity)
-            self._extraction = extract(context, context.selected_objects)
+            self._extraction = extract(context, context.selected_objects, self._settings.output == "REFINED")
             check_storable(self._extraction, self._settings.output)
         except BakeError as error:
             return self._gave_up(error)

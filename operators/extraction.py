@@ -13,6 +13,7 @@ from ..core.errors import NothingToBakeError
 from ..core.scene import Floats, Lamp, Scene, SurfaceMesh
 from .display import is_display
 from .lamps import lamp_of
+from .layers import Layers, layers_of
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
 from .materials import Surface, material_surface, world_radiance
 from .participants import Participants, shown_as_rendered
@@ -45,6 +46,8 @@ class Target:
         Of the object's own mesh, to notice that it was edited during the bake.
     same_corners : bool
         Whether the evaluated mesh has the very face corners of the object's own mesh.
+    layers : Layers or None
+        Of the evaluated mesh, where they were asked for.
     """
 
     uid: int
@@ -56,6 +59,7 @@ class Target:
     local: LocalMesh
     fingerprint: bytes
     same_corners: bool
+    layers: Layers | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +84,15 @@ class Extraction:
     view_layer: str
 
 
-def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> Extraction:
+def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], with_layers: bool = False) -> Extraction:
     """Read everything that renders, with `objects` marked to be baked.
 
     A refined object from an earlier bake means its original. Nothing of the file is changed.
+
+    Parameters
+    ----------
+    with_layers : bool
+        Whether to read the data layers of `objects`, too, which only a refined mesh needs.
 
     Raises
     ------
@@ -96,7 +105,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> 
     outputs = outputs_by_source()
     view_layer = context.view_layer
     with sources_shown(outputs), shown_as_rendered(context) as (depsgraph, participants):
-        reader = _Reader(depsgraph, participants, set(wanted), outputs)
+        reader = _Reader(depsgraph, participants, set(wanted), outputs, with_layers)
         with sources_in_place(outputs, view_layer):
             reader.read()
         warnings += _misplaced(reader.targets, outputs, view_layer)
@@ -197,11 +206,13 @@ class _Reader:
         participants: Participants,
         wanted: set[bpy.types.Object],
         outputs: Outputs,
+        with_layers: bool,
     ) -> None:
         self._depsgraph = depsgraph
         self._participants = participants
         self._wanted = wanted
         self._outputs = outputs
+        self._with_layers = with_layers
         self._local_meshes: dict[int, LocalMesh | None] = {}
         self._surfaces: dict[Any, Surface] = {}
         self._users_of_note: dict[tuple[str, str], dict[str, None]] = {}
@@ -215,8 +226,8 @@ class _Reader:
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
         entries = sorted(self._entries(), key=lambda entry: entry[0])
-        for _, original, baked, local, materials, matrix in entries:
-            self._add(original, baked, local, materials, matrix)
+        for _, original, baked, local, materials, matrix, layers in entries:
+            self._add(original, baked, local, materials, matrix, layers)
 
     def warnings(self) -> list[str]:
         """Return a sentence for everything that was left out or guessed."""
@@ -252,7 +263,8 @@ class _Reader:
                 if baked:
                     self.without_faces.add(original)
                 continue
-            yield order, original, baked, local, _slot_materials(obj, local), matrix
+            layers = self._layers(obj) if baked and self._with_layers else None
+            yield order, original, baked, local, _slot_materials(obj, local), matrix, layers
         self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
 
     def _lamp(self, obj: bpy.types.Object, matrix: Floats) -> Lamp | None:
@@ -270,7 +282,21 @@ class _Reader:
             obj.to_mesh_clear()
         return self._local_meshes[key]
 
-    def _add(self, original, baked: bool, local: LocalMesh, materials: tuple[Any, ...], matrix: Floats) -> None:
+    @staticmethod
+    def _layers(obj: bpy.types.Object) -> Layers:
+        layers = layers_of(obj, obj.to_mesh())
+        obj.to_mesh_clear()
+        return layers
+
+    def _add(
+        self,
+        original,
+        baked: bool,
+        local: LocalMesh,
+        materials: tuple[Any, ...],
+        matrix: Floats,
+        layers: Layers | None,
+    ) -> None:
         flipped = np.linalg.det(matrix[:3, :3]) < 0.0
         if flipped:
             local = turned_over(local)
@@ -291,6 +317,7 @@ class _Reader:
                     local=local,
                     fingerprint=fingerprint(mesh),
                     same_corners=bool(same_corners),
+                    layers=layers,
                 )
             )
         vertices, normals = placed(local, matrix)

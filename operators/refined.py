@@ -22,6 +22,7 @@ from .changes import (
 from .colours import write_colours
 from .extraction import Target
 from .journal import Journal
+from .layers import Subdivision, carry, carry_vertex_groups
 from .places import remember_place
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
 
@@ -40,6 +41,11 @@ def store_refined(
     mesh = _refined_mesh(_output_name(source), target, baked, inverse, journal)
     _give_slots(mesh, source, target, baked, journal)
     output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
+    if target.layers is not None:
+        carry_vertex_groups(output, target.layers, _subdivision(target, baked))
+    # Last of all that is done to the mesh, because it may drop faces that Blender cannot hold (a corner used twice)
+    # with all that belongs to them.
+    mesh.validate()
     for collection in source.users_collection:
         link(output, collection, journal)
     _take_place(source, output, view_layer, journal)
@@ -77,11 +83,26 @@ def _refined_mesh(
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
     mesh.polygons.foreach_set("material_index", target.local.slots[baked.parent_triangle].astype(np.int32))
     mesh.update(calc_edges=True)
+    if target.layers is not None:
+        carry(mesh, target.layers, _subdivision(target, baked), _name_beside_ours)
     write_colours(mesh, values_of_corners(target, baked))
     _shade(mesh, vertices, triangles, normals[:, order])
-    # Last, because it may drop faces that Blender cannot hold (a corner used twice) with all that belongs to them.
-    mesh.validate()
     return mesh
+
+
+def _subdivision(target: Target, baked: BakedMesh) -> Subdivision:
+    order = _corner_order(target)
+    return Subdivision(
+        triangles=baked.triangles[:, order],
+        parent=baked.parent_triangle,
+        weights=baked.barycentric[:, order],
+        parent_vertices=target.local.triangles,
+        parent_corners=target.local.corners,
+    )
+
+
+def _name_beside_ours(name: str) -> str:
+    return f"{name} (before bake)" if name in display.ATTRIBUTES else name
 
 
 def _corner_order(target: Target) -> list[int]:
