@@ -19,6 +19,7 @@ from .job import BakeJob, Failed, Finished
 from .record import source_of
 from .settings import bake_settings
 from .store import check_storable, scene_of, store
+from .targets import shows_surfaces
 from .transports import remember
 
 _POLL_SECONDS = 0.1
@@ -42,7 +43,7 @@ def bake_objects(
         When `progress` raised it; nothing was changed.
     """
     began = time.perf_counter()
-    extraction = extract(context, objects, settings.output == "REFINED")
+    extraction = extract(context, objects, settings.output)
     check_storable(extraction, settings.output)
     read = time.perf_counter() - began
     result = _core_bake()(extraction.scene, settings, progress)
@@ -116,7 +117,7 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
         return f"{way_to_object_mode(context)} to bake"
     if context.scene.library is not None:
         return "This scene is linked from another file; make it local to bake"
-    meshes = [obj for obj in context.selected_objects if source_of(obj).type == "MESH"]
+    meshes = [obj for obj in context.selected_objects if shows_surfaces(source_of(obj))]
     if not meshes:
         return "Select the meshes to bake"
     if all(source_of(obj).library is not None for obj in meshes):
@@ -174,7 +175,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         began = time.perf_counter()
         try:
             self._settings = bake_settings(context.scene.radiosity)
-            self._extraction = extract(context, context.selected_objects, self._settings.output == "REFINED")
+            self._extraction = extract(context, context.selected_objects, self._settings.output)
             check_storable(self._extraction, self._settings.output)
         except BakeError as error:
             return self._gave_up(error)

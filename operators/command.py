@@ -17,7 +17,9 @@ from ..core.settings import METHODS, OUTPUTS, QUALITIES, BakeSettings
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_writable, replaced
 from .participants import rendered_objects
+from .record import source_of
 from .settings import bake_settings, keep_settings
+from .targets import shows_surfaces
 
 NAME = "radiosity_bake"
 
@@ -164,16 +166,16 @@ def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettin
 
 def _objects(names: list[str] | None, context: bpy.types.Context) -> list[bpy.types.Object]:
     if names is None:
-        meshes = [obj for obj in rendered_objects(context.view_layer) if obj.type == "MESH"]
+        meshes = [obj for obj in rendered_objects(context.view_layer) if shows_surfaces(obj)]
         if not meshes:
-            raise CommandError("The scene has no mesh that renders")
+            raise CommandError("The scene has nothing with faces that renders")
         return sorted(meshes, key=lambda obj: obj.name_full)
     objects = []
     for name in names:
         obj = context.scene.objects.get(name)
         if obj is None:
             raise CommandError(f'There is no object "{name}" in the scene "{context.scene.name}"')
-        if obj.type != "MESH":
+        if not shows_surfaces(source_of(obj)):
             raise CommandError(f'"{name}" is not a mesh and cannot be baked')
         objects.append(obj)
     return objects

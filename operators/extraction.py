@@ -13,53 +13,15 @@ from ..core.errors import NothingToBakeError
 from ..core.scene import Floats, Lamp, Scene, SurfaceMesh
 from .display import is_display
 from .lamps import lamp_of
-from .layers import Layers, layers_of
+from .layers import Layers, joined_layers, layers_of
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
 from .materials import Surface, material_surface, world_radiance
 from .participants import Participants, shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
 from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, source_of
+from .targets import Part, Target, joined_mesh, shows_surfaces
 
 _UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
-
-
-@dataclass(frozen=True, eq=False)
-class Target:
-    """An object that is baked: how to find it again, and what its baked values have to be fitted to.
-
-    Attributes
-    ----------
-    uid : int
-        `session_uid` of the object, which survives renaming and undo.
-    name : str
-    mesh : int
-        Index into `Scene.meshes`.
-    matrix : (4, 4) float
-        From the object's space to the world's, when it was read.
-    shown : (4, 4) float
-        Where it was seen then: the transform of its refined object if it had one.
-    flipped : bool
-        Whether the triangles were turned over, because the matrix mirrors.
-    local : LocalMesh
-        The evaluated mesh; its triangles and corners in the order (and winding) of `Scene.meshes[mesh]`.
-    fingerprint : bytes
-        Of the object's own mesh, to notice that it was edited during the bake.
-    same_corners : bool
-        Whether the evaluated mesh has the very face corners of the object's own mesh.
-    layers : Layers or None
-        Of the evaluated mesh, where they were asked for.
-    """
-
-    uid: int
-    name: str
-    mesh: int
-    matrix: Floats
-    shown: Floats
-    flipped: bool
-    local: LocalMesh
-    fingerprint: bytes
-    same_corners: bool
-    layers: Layers | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,28 +46,28 @@ class Extraction:
     view_layer: str
 
 
-def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], with_layers: bool = False) -> Extraction:
+def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], output: str = "REFINED") -> Extraction:
     """Read everything that renders, with `objects` marked to be baked.
 
     A refined object from an earlier bake means its original. Nothing of the file is changed.
 
     Parameters
     ----------
-    with_layers : bool
-        Whether to read the data layers of `objects`, too, which only a refined mesh needs.
+    output : str
+        `'REFINED'` bakes all that the objects show, instances as well; `'ORIGINAL'` their own meshes alone.
 
     Raises
     ------
     NothingToBakeError
-        When none of `objects` is a mesh with faces that renders.
+        When none of `objects` has faces that render and can be baked.
     """
     warnings: list[str] = []
     skipped: dict[_Reason, list[str]] = {}
-    wanted = _wanted(objects, skipped)
+    wanted = _wanted(objects, output, skipped)
     outputs = outputs_by_source()
     view_layer = context.view_layer
     with sources_shown(outputs), shown_as_rendered(context) as (depsgraph, participants):
-        reader = _Reader(depsgraph, participants, set(wanted), outputs, with_layers)
+        reader = _Reader(depsgraph, participants, set(wanted), outputs, output)
         with sources_in_place(outputs, view_layer):
             reader.read()
         warnings += _misplaced(reader.targets, outputs, view_layer)
@@ -140,27 +102,52 @@ _LINKED = _Reason(
     "is linked from another file; make it local to bake it",
     "are linked from another file; make them local to bake them",
 )
+_WITHOUT_A_MESH = _Reason(
+    "has no mesh of its own; Refined Mesh bakes it",
+    "have no meshes of their own; Refined Mesh bakes them",
+)
 _WITHOUT_FACES = _Reason("has no faces", "have no faces")
 _NOT_RENDERED = _Reason("is not shown in renders", "are not shown in renders")
 
 
-def _wanted(objects: Iterable[bpy.types.Object], skipped: dict[_Reason, list[str]]) -> list[bpy.types.Object]:
+def _wanted(
+    objects: Iterable[bpy.types.Object], output: str, skipped: dict[_Reason, list[str]]
+) -> list[bpy.types.Object]:
     wanted = []
-    for obj in dict.fromkeys(source_of(obj) for obj in objects):
-        if obj.type != "MESH":
+    for obj in dict.fromkeys(_that_makes_the_faces(source_of(obj)) for obj in objects):
+        if not shows_surfaces(obj):
             skipped.setdefault(_NOT_A_MESH, []).append(obj.name)
         elif obj.library is not None:
             skipped.setdefault(_LINKED, []).append(obj.name)
+        elif output == "ORIGINAL" and obj.type != "MESH":
+            skipped.setdefault(_WITHOUT_A_MESH, []).append(obj.name)
         else:
             wanted.append(obj)
     return wanted
+
+
+def _that_makes_the_faces(obj: bpy.types.Object) -> bpy.types.Object:
+    """Return the object whose mesh shows `obj`: of metaballs whose names differ in the number alone, the first."""
+    if obj.type != "META":
+        return obj
+    family = [other for other in bpy.data.objects if other.type == "META" and _stem(other.name) == _stem(obj.name)]
+    return min((other for other in family if set(other.users_scene) & set(obj.users_scene)), key=_number, default=obj)
+
+
+def _stem(name: str) -> str:
+    stem, _, number = name.rpartition(".")
+    return stem if number.isdigit() else name
+
+
+def _number(obj: bpy.types.Object) -> int:
+    return int(obj.name.rpartition(".")[2]) if _stem(obj.name) != obj.name else -1
 
 
 def _skip_missing(wanted: list[bpy.types.Object], reader: "_Reader", skipped: dict[_Reason, list[str]]) -> None:
     found = {target.uid for target in reader.targets}
     for obj in wanted:
         if obj.session_uid not in found:
-            why = _WITHOUT_FACES if obj in reader.without_faces else _NOT_RENDERED
+            why = _WITHOUT_FACES if obj in reader.shown else _NOT_RENDERED
             skipped.setdefault(why, []).append(obj.name)
 
 
@@ -206,14 +193,15 @@ class _Reader:
         participants: Participants,
         wanted: set[bpy.types.Object],
         outputs: Outputs,
-        with_layers: bool,
+        output: str,
     ) -> None:
         self._depsgraph = depsgraph
         self._participants = participants
         self._wanted = wanted
         self._outputs = outputs
-        self._with_layers = with_layers
+        self._output = output
         self._local_meshes: dict[int, LocalMesh | None] = {}
+        self._layers_of_mesh: dict[int, Layers] = {}
         self._surfaces: dict[Any, Surface] = {}
         self._users_of_note: dict[tuple[str, str], dict[str, None]] = {}
         self._left_out: dict[str, None] = {}
@@ -221,13 +209,18 @@ class _Reader:
         self.meshes: list[SurfaceMesh] = []
         self.lamps: list[Lamp] = []
         self.targets: list[Target] = []
-        self.without_faces: set[bpy.types.Object] = set()
+        self._parts: dict[bpy.types.Object, list[Part]] = {}
+        self._matrices: dict[bpy.types.Object, Floats] = {}
+        self._unbaked_instances: dict[str, None] = {}
+        self._instanced_lamps: dict[str, None] = {}
+        self.shown: set[bpy.types.Object] = set()
 
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
         entries = sorted(self._entries(), key=lambda entry: entry[0])
-        for _, original, baked, local, materials, matrix, layers in entries:
-            self._add(original, baked, local, materials, matrix, layers)
+        for _, original, owner, local, materials, matrix, layers in entries:
+            self._add(original, owner, local, materials, matrix, layers)
+        self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
 
     def warnings(self) -> list[str]:
         """Return a sentence for everything that was left out or guessed."""
@@ -239,6 +232,14 @@ class _Reader:
         if self._left_out:
             names = _names(self._left_out, most=None)
             sentences.append(f"{names} left out: only objects that render as meshes take part")
+        sentences += [
+            f'The instances that "{name}" makes have no mesh of their own and were not baked; Refined Mesh bakes them'
+            for name in self._unbaked_instances
+        ]
+        sentences += [
+            f'The lamps that "{name}" instances are hidden together with it; their light is in the colours'
+            for name in self._instanced_lamps
+        ]
         return sentences
 
     def _entries(self) -> Iterator[tuple[Any, ...]]:
@@ -250,22 +251,37 @@ class _Reader:
             original = obj.original
             if obj.type in _UNSUPPORTED:
                 self._left_out[original.name] = None
-            parent = instance.parent.original.name_full if instance.is_instance else ""
-            order = (original.name_full, parent, tuple(instance.persistent_id) if instance.is_instance else ())
+            parent = instance.parent.original if instance.is_instance else None
+            order = (
+                original.name_full,
+                parent.name_full if parent else "",
+                tuple(instance.persistent_id) if parent else (),
+            )
             matrix = np.array(instance.matrix_world, dtype=np.float64)
+            owner = self._owner(instance, matrix)
             if obj.type == "LIGHT":
                 lamps.append((order, self._lamp(obj, matrix)))
+                if owner is not None:
+                    self._instanced_lamps[owner.name] = None
             if obj.type != "MESH":
                 continue
             local = self._local_mesh(obj)
-            baked = not instance.is_instance and original in self._wanted
-            if local is None:
-                if baked:
-                    self.without_faces.add(original)
-                continue
-            layers = self._layers(obj) if baked and self._with_layers else None
-            yield order, original, baked, local, _slot_materials(obj, local), matrix, layers
+            if local is not None:
+                layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
+                yield order, original, owner, local, _slot_materials(obj, local), matrix, layers
         self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
+
+    def _owner(self, instance: bpy.types.DepsgraphObjectInstance, matrix: Floats) -> bpy.types.Object | None:
+        """Return the object that is to carry the colours of an instance, or of an object itself; None for nobody."""
+        owner = (instance.parent if instance.is_instance else instance.object).original
+        if owner not in self._wanted:
+            return None
+        self.shown.add(owner)
+        self._matrices[owner] = np.array(instance.parent.matrix_world) if instance.is_instance else matrix
+        if self._output == "ORIGINAL" and instance.is_instance:
+            self._unbaked_instances[owner.name] = None
+            return None
+        return owner
 
     def _lamp(self, obj: bpy.types.Object, matrix: Floats) -> Lamp | None:
         lamp, notes = lamp_of(obj, matrix)
@@ -282,46 +298,42 @@ class _Reader:
             obj.to_mesh_clear()
         return self._local_meshes[key]
 
-    @staticmethod
-    def _layers(obj: bpy.types.Object) -> Layers:
-        layers = layers_of(obj, obj.to_mesh())
-        obj.to_mesh_clear()
-        return layers
+    def _layers(self, obj: bpy.types.Object) -> Layers:
+        key = obj.data.as_pointer()
+        if key not in self._layers_of_mesh:
+            self._layers_of_mesh[key] = layers_of(obj, obj.to_mesh())
+            obj.to_mesh_clear()
+        return self._layers_of_mesh[key]
 
     def _add(
-        self,
-        original,
-        baked: bool,
-        local: LocalMesh,
-        materials: tuple[Any, ...],
-        matrix: Floats,
-        layers: Layers | None,
+        self, original, owner, local: LocalMesh, materials: tuple[Any, ...], matrix: Floats, layers: Layers | None
     ) -> None:
-        flipped = np.linalg.det(matrix[:3, :3]) < 0.0
-        if flipped:
+        if np.linalg.det(matrix[:3, :3]) < 0.0:
             local = turned_over(local)
         reflectance, emission = self._optics(original.name, local, materials)
-        if baked:
-            mesh = original.data
-            corners = np.empty(len(mesh.loops), dtype=np.int32)
-            mesh.loops.foreach_get("vertex_index", corners)
-            same_corners = len(mesh.vertices) == len(local.vertices) and np.array_equal(corners, local.vertex_of_corner)
-            self.targets.append(
-                Target(
-                    uid=original.session_uid,
-                    name=original.name,
-                    mesh=len(self.meshes),
-                    matrix=matrix,
-                    shown=np.array(self._outputs.get(original, [original])[0].matrix_world),
-                    flipped=bool(flipped),
-                    local=local,
-                    fingerprint=fingerprint(mesh),
-                    same_corners=bool(same_corners),
-                    layers=layers,
-                )
-            )
+        if owner is not None:
+            self._parts.setdefault(owner, []).append(Part(len(self.meshes), local, materials, matrix, layers))
         vertices, normals = placed(local, matrix)
+        baked = owner is not None
         self.meshes.append(SurfaceMesh(original.name, vertices, local.triangles, normals, reflectance, emission, baked))
+
+    def _target(self, owner: bpy.types.Object, parts: list[Part]) -> Target:
+        matrix = self._matrices[owner]
+        # Its own mesh first, so that its slots stay as they are.
+        parts = sorted(parts, key=lambda part: not np.array_equal(part.matrix, matrix))
+        local = joined_mesh(parts, matrix)
+        return Target(
+            uid=owner.session_uid,
+            name=owner.name,
+            meshes=tuple(part.mesh for part in parts),
+            matrix=matrix,
+            shown=np.array(self._outputs.get(owner, [owner])[0].matrix_world),
+            flipped=bool(np.linalg.det(matrix[:3, :3]) < 0.0),
+            local=local,
+            fingerprint=fingerprint(owner.data),
+            same_corners=owner.type == "MESH" and _has_corners_of(owner.data, local),
+            layers=joined_layers([part.layers for part in parts], [part.local for part in parts]),
+        )
 
     def _optics(self, name: str, local: LocalMesh, materials: tuple[Any, ...]) -> tuple[Floats, Floats]:
         # Like the renderers: a face whose slot does not exist takes the last one.
@@ -339,6 +351,12 @@ class _Reader:
         reflectance = np.array([surface.reflectance for surface in surfaces])
         emission = np.array([surface.emission for surface in surfaces])
         return reflectance[slot_of_triangle], emission[slot_of_triangle]
+
+
+def _has_corners_of(mesh: bpy.types.Mesh, local: LocalMesh) -> bool:
+    corners = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    return len(mesh.vertices) == len(local.vertices) and np.array_equal(corners, local.vertex_of_corner)
 
 
 def _slot_materials(obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:

@@ -16,11 +16,11 @@ from .changes import (
     rename_attribute,
 )
 from .colours import AttributeNameError, remove_if_there, write_colours
-from .extraction import Target
 from .journal import Journal
 from .local_mesh import local_mesh
 from .record import BAKED_IN_PLACE
 from .refined import baked_values
+from .targets import Target
 from .transfer import nearest_corners
 
 

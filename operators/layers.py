@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The data layers of a mesh (UV maps, vertex groups, marks, any attribute), carried over to its subdivision."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.scene import Floats, Ints
+from .local_mesh import LocalMesh
 
 _STORED_OTHERWISE = {"position", "material_index", "sharp_face", "custom_normal"}
 """Attributes that a refined mesh gets from its vertices, slots and shading."""
@@ -180,6 +181,92 @@ def _vertex_groups(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[VertexG
         weight[vertex[of_group]] = table[of_group, 2]
         made.append(VertexGroup(vertex_group.name, vertex_group.lock_weight, member, weight))
     return tuple(made)
+
+
+def joined_layers(parts: Sequence[Layers | None], meshes: Sequence[LocalMesh]) -> Layers | None:
+    """Return the layers of several meshes as those of the mesh that joins them; None if any has none.
+
+    What only some of them have is 0, or empty, on the others. Of two layers of one name and different kinds, the first
+    is kept.
+    """
+    if any(part is None for part in parts) or len(parts) == 1:
+        return parts[0] if len(parts) == 1 else None
+    known = [part for part in parts if part is not None]
+    sizes = [_sizes(part, mesh) for part, mesh in zip(known, meshes, strict=True)]
+    kinds: dict[str, Layer] = {}
+    for layer in (layer for part in known for layer in part.attributes):
+        kinds.setdefault(layer.name, layer)
+    first_vertex = np.cumsum([0, *(size["POINT"] for size in sizes[:-1])])
+    first_face = np.cumsum([0, *(size["FACE"] for size in sizes[:-1])])
+    groups: dict[str, VertexGroup] = {}
+    for group in (group for part in known for group in part.groups):
+        groups.setdefault(group.name, group)
+    return Layers(
+        attributes=tuple(
+            Layer(kind.name, kind.data_type, kind.domain, _joined_values(kind, known, sizes)) for kind in kinds.values()
+        ),
+        marks=_joined_marks(known, sizes),
+        groups=tuple(_joined_group(group, known, sizes) for group in groups.values()),
+        active_group=known[0].active_group,
+        active_uv=next((part.active_uv for part in known if part.active_uv), ""),
+        render_uv=next((part.render_uv for part in known if part.render_uv), ""),
+        clone_uv=next((part.clone_uv for part in known if part.clone_uv), ""),
+        edges=np.concatenate([part.edges + first for part, first in zip(known, first_vertex, strict=True)]),
+        face_of_triangle=np.concatenate(
+            [part.face_of_triangle + first for part, first in zip(known, first_face, strict=True)]
+        ),
+    )
+
+
+def _sizes(layers: Layers, mesh: LocalMesh) -> dict[str, int]:
+    """Return how many elements each domain of a mesh has."""
+    return {
+        "POINT": len(mesh.vertices),
+        "EDGE": len(layers.edges),
+        "FACE": int(layers.face_of_triangle.max(initial=-1)) + 1,
+        "CORNER": len(mesh.vertex_of_corner),
+    }
+
+
+def _nothing(values: NDArray[Any], count: int) -> NDArray[Any]:
+    """Return so many values of the kind of `values` (n, width) that say nothing: 0, or an empty text."""
+    empty = b"" if values.dtype == object else 0
+    return np.full((count, values.shape[1]), empty, dtype=values.dtype)
+
+
+def _joined_values(kind: Layer, parts: Sequence[Layers], sizes: Sequence[dict[str, int]]) -> NDArray[Any]:
+    found = []
+    for part, size in zip(parts, sizes, strict=True):
+        alike = (
+            layer.values
+            for layer in part.attributes
+            if (layer.name, layer.data_type, layer.domain) == (kind.name, kind.data_type, kind.domain)
+        )
+        found.append(next(alike, _nothing(kind.values, size[kind.domain])))
+    return np.concatenate(found)
+
+
+def _joined_marks(
+    parts: Sequence[Layers], sizes: Sequence[dict[str, int]]
+) -> tuple[tuple[str, str, NDArray[np.bool_]], ...]:
+    made = []
+    for collection, name in dict.fromkeys((mark[0], mark[1]) for part in parts for mark in part.marks):
+        domain = "EDGE" if collection == "edges" else "FACE"
+        values = []
+        for part, size in zip(parts, sizes, strict=True):
+            own = (mark[2] for mark in part.marks if mark[:2] == (collection, name))
+            values.append(next(own, np.zeros(size[domain], dtype=bool)))
+        made.append((collection, name, np.concatenate(values)))
+    return tuple(made)
+
+
+def _joined_group(group: VertexGroup, parts: Sequence[Layers], sizes: Sequence[dict[str, int]]) -> VertexGroup:
+    member, weight = [], []
+    for part, size in zip(parts, sizes, strict=True):
+        own = next((other for other in part.groups if other.name == group.name), None)
+        member.append(np.zeros(size["POINT"], dtype=bool) if own is None else own.member)
+        weight.append(np.zeros(size["POINT"]) if own is None else own.weight)
+    return VertexGroup(group.name, group.locked, np.concatenate(member), np.concatenate(weight))
 
 
 def carry(mesh: bpy.types.Mesh, layers: Layers, where: Subdivision, name_of: Callable[[str], str]) -> None:

@@ -11,6 +11,9 @@ import numpy as np
 
 from ..core.scene import Floats, Ints
 
+_LEAST_DETERMINANT = 1e-12
+"""Below this share of the product of its axes' lengths a matrix has no inverse worth having."""
+
 
 @dataclass(frozen=True, eq=False)
 class LocalMesh:
@@ -66,15 +69,38 @@ def local_mesh(mesh: bpy.types.Mesh) -> LocalMesh:
     )
 
 
-def fingerprint(mesh: bpy.types.Mesh) -> bytes:
-    """Return a digest of the vertices and faces of `mesh`."""
-    vertices = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    corners = np.empty(len(mesh.loops), dtype=np.int32)
-    starts = np.empty(len(mesh.polygons), dtype=np.int32)
-    mesh.vertices.foreach_get("co", vertices)
-    mesh.loops.foreach_get("vertex_index", corners)
-    mesh.polygons.foreach_get("loop_start", starts)
-    return blake2b(b"|".join(array.tobytes() for array in (vertices, corners, starts))).digest()
+def fingerprint(data: bpy.types.ID | None) -> bytes:
+    """Return a digest of what gives an object its shape: vertices and faces, points of curves, letters, balls."""
+    if isinstance(data, bpy.types.Mesh):
+        shape = [
+            _read(data.vertices, "co", 3, np.float32),
+            _read(data.loops, "vertex_index", 1, np.int32),
+            _read(data.polygons, "loop_start", 1, np.int32),
+        ]
+    elif isinstance(data, bpy.types.Curve):
+        shape = [_read(spline.points, "co", 4, np.float32) for spline in data.splines]
+        shape += [_read(spline.bezier_points, "co", 3, np.float32) for spline in data.splines]
+        shape.append(getattr(data, "body", "").encode())
+    elif isinstance(data, bpy.types.MetaBall):
+        shape = [_read(data.elements, "co", 3, np.float32), _read(data.elements, "radius", 1, np.float32)]
+    else:
+        shape = []
+    return blake2b(b"|".join(shape)).digest()
+
+
+def _read(elements: Any, name: str, size: int, kind: Any) -> bytes:
+    values = np.empty(size * len(elements), dtype=kind)
+    elements.foreach_get(name, values)
+    return values.tobytes()
+
+
+def inverse_of(matrix: Floats) -> Floats | None:
+    """Return the inverse of a transform, or None when it flattens what it places."""
+    linear = matrix[:3, :3]
+    lengths = np.linalg.norm(linear, axis=0)
+    if not abs(np.linalg.det(linear)) > _LEAST_DETERMINANT * np.prod(lengths):
+        return None
+    return np.linalg.inv(matrix)
 
 
 def turned_over(local: LocalMesh) -> LocalMesh:

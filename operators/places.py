@@ -95,9 +95,16 @@ def follow(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journa
     if any(_is_animated(obj) for obj in (source, outputs[0])):
         return False
     before, now = _transform(source), _transform(outputs[0])
+    if is_bent_by_parent(source) and outputs[0].parent == source.parent:
+        now["parent_type"] = source.parent_type
     journal.on_failure(_set_transform, source, before)
     _set_transform(source, now)
     return True
+
+
+def is_bent_by_parent(obj: bpy.types.Object) -> bool:
+    """Return whether the parent of `obj` bends its mesh; a refined mesh is bent already."""
+    return obj.parent_type in {"ARMATURE", "LATTICE"}
 
 
 def show_again(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journal: Journal) -> None:

@@ -20,24 +20,24 @@ from .changes import (
     set_eye,
 )
 from .colours import write_colours
-from .extraction import Target
 from .journal import Journal
 from .layers import Subdivision, carry, carry_vertex_groups
-from .places import remember_place
+from .likeness import take_after
+from .local_mesh import inverse_of
+from .places import is_bent_by_parent, remember_place
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
+from .targets import Target
 
 _ADDED_TO_NAME = re.compile(r" Radiosity(\.\d+)?$")
 _FLAT_COSINE = 1.0 - 1e-6
 """A corner is flat when its normal is that of the triangle, to single precision (0.08 degrees)."""
-_LEAST_DETERMINANT = 1e-12
-"""Below this share of the product of its axes' lengths a matrix has no inverse worth having."""
 
 
 def store_refined(
     source: bpy.types.Object, target: Target, baked: BakedMesh, view_layer: bpy.types.ViewLayer, journal: Journal
 ) -> bpy.types.Object:
     """Make the refined object of `source`, show it and hide `source`; return it."""
-    inverse = _inverse(target.matrix)
+    inverse = inverse_of(target.matrix)
     mesh = _refined_mesh(_output_name(source), target, baked, inverse, journal)
     _give_slots(mesh, source, target, baked, journal)
     output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
@@ -55,15 +55,6 @@ def store_refined(
 def _output_name(source: bpy.types.Object) -> str:
     """Return "Room Radiosity" for "Room", and for a refined object of that name whose own original is gone."""
     return f"{_ADDED_TO_NAME.sub('', source.name)} Radiosity"
-
-
-def _inverse(matrix: Floats) -> Floats | None:
-    """Return the inverse of a transform, or None when it flattens the object."""
-    linear = matrix[:3, :3]
-    lengths = np.linalg.norm(linear, axis=0)
-    if not abs(np.linalg.det(linear)) > _LEAST_DETERMINANT * np.prod(lengths):
-        return None
-    return np.linalg.inv(matrix)
 
 
 def _refined_mesh(
@@ -108,7 +99,7 @@ def _name_beside_ours(name: str) -> str:
 def _corner_order(target: Target) -> list[int]:
     """Return the order of a refined triangle's corners on the mesh of its object."""
     # Blender turns the faces of a mirrored object over, as the extraction did; in local space they turn back.
-    return [0, 2, 1] if target.flipped and _inverse(target.matrix) is not None else [0, 1, 2]
+    return [0, 2, 1] if target.flipped and inverse_of(target.matrix) is not None else [0, 1, 2]
 
 
 def values_of_corners(target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
@@ -170,15 +161,22 @@ def _object_like(
     source: bpy.types.Object, mesh: bpy.types.Mesh, keep_transform: bool, journal: Journal
 ) -> bpy.types.Object:
     """Return a copy of `source` with another mesh: same parent, transform, constraints and settings, no modifiers."""
-    output = source.copy()
-    journal.on_failure(bpy.data.objects.remove, output)
-    output.name = mesh.name
-    forget(output)
-    output.modifiers.clear()
+    if source.type == "MESH":
+        output = source.copy()
+        journal.on_failure(bpy.data.objects.remove, output)
+        output.name = mesh.name
+        forget(output)
+        output.modifiers.clear()
+        for slot in output.material_slots:
+            slot.link = "DATA"
+        output.data = mesh
+    else:
+        output = bpy.data.objects.new(mesh.name, mesh)
+        journal.on_failure(bpy.data.objects.remove, output)
+        take_after(output, source)
     output.instance_type = "NONE"
-    for slot in output.material_slots:
-        slot.link = "DATA"
-    output.data = mesh
+    if is_bent_by_parent(output):
+        output.parent_type = "OBJECT"
     if not keep_transform:
         output.animation_data_clear()
         output.constraints.clear()

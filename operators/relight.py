@@ -17,7 +17,7 @@ from ..core.settings import BakeSettings
 from . import display
 from .bake import RADIOSITY_OT_bake, counted, shown_report, way_to_object_mode
 from .colours import rewrite_colours
-from .extraction import Extraction, Target, extract
+from .extraction import Extraction, extract
 from .journal import Journal
 from .local_mesh import fingerprint
 from .places import outputs_by_source
@@ -25,6 +25,7 @@ from .record import BAKED_IN_PLACE
 from .refined import values_of_corners
 from .settings import bake_settings
 from .store import store
+from .targets import Target, baked_targets
 from .transports import RememberedBake, remembered_bake
 
 
@@ -48,7 +49,7 @@ def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_pr
         raise NotRelightableError(reason)
     if _without_effect(bake_settings(scene.radiosity)) != _without_effect(bake.settings):
         raise NotRelightableError("The settings were changed since the bake; bake again, or set them back to relight")
-    extraction = extract(context, _originals(bake))
+    extraction = extract(context, _originals(bake), bake.settings.output)
     uids = [target.uid for target in extraction.targets]
     if uids != [obj.uid for obj in bake.objects]:
         raise NotRelightableError("Objects were added, removed or hidden since the bake; bake again")
@@ -90,9 +91,8 @@ def _store_in_refined(bake: RememberedBake, extraction: Extraction, result: Bake
     """
     outputs = outputs_by_source()
     found: list[tuple[bpy.types.Object, Target, BakedMesh]] = []
-    for source, baked_object, target, baked in zip(
-        _originals(bake), bake.objects, extraction.targets, result.meshes, strict=True
-    ):
+    pairs = baked_targets(extraction.scene, extraction.targets, result)
+    for source, baked_object, (target, baked) in zip(_originals(bake), bake.objects, pairs, strict=True):
         for output in outputs[source]:
             if output.mode != "OBJECT" or fingerprint(output.data) != baked_object.fingerprint:
                 raise NotRelightableError(f'The mesh of "{output.name}" was edited since the bake; bake again')

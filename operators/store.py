@@ -7,13 +7,15 @@ import bpy
 from ..core.errors import BakeError
 from ..core.result import BakeResult
 from . import display
-from .extraction import Extraction, Target, fingerprint
+from .extraction import Extraction
 from .in_place import check_names, store_in_place
 from .journal import Journal
+from .local_mesh import fingerprint
 from .places import same_place
 from .record import BAKED_IN_PLACE
 from .refined import store_refined
 from .restore import outputs_of, restore_object
+from .targets import Target, baked_targets
 
 
 class ChangedMeanwhileError(BakeError):
@@ -49,8 +51,7 @@ def store(
             f'The view layer "{extraction.view_layer}" was removed or renamed during the bake; nothing was stored'
         )
     check_storable(extraction, output)
-    targets = {target.mesh: target for target in extraction.targets}
-    pairs = [(targets[baked.mesh], baked) for baked in result.meshes]
+    pairs = baked_targets(extraction.scene, extraction.targets, result)
     found = _find([target for target, _ in pairs], view_layer)
     warnings = [sentence for target, obj in found for sentence in _cautions(target, obj, output)]
     baked_objects = []
@@ -131,6 +132,4 @@ def _cautions(target: Target, obj: bpy.types.Object, output: str) -> list[str]:
             f'"{obj.name}" has modifiers that change its faces; '
             "its corners got the light of the nearest point of the modified mesh"
         )
-    if output == "REFINED" and obj.is_instancer:
-        sentences.append(f'The instances that "{obj.name}" makes are hidden together with it')
     return sentences

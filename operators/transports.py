@@ -49,7 +49,7 @@ class RememberedBake:
         That the scene has while it shows this bake.
     settings : BakeSettings
     objects : tuple of BakedObject
-        In the order of the baked meshes.
+        In the order of the targets.
     transport : KeptTransport or NotKept
     """
 
@@ -76,10 +76,9 @@ def remember(
     scene.radiosity.token = secrets.token_hex(8)
     if result.kept is None:
         return
-    targets = {target.mesh: target for target in extraction.targets}
     objects = tuple(
-        BakedObject(targets[baked.mesh].uid, targets[baked.mesh].name, fingerprint(obj.data))
-        for baked, obj in zip(result.meshes, shown, strict=True)
+        BakedObject(target.uid, target.name, fingerprint(obj.data))
+        for target, obj in zip(extraction.targets, shown, strict=True)
     )
     _last["bake"] = RememberedBake(scene.session_uid, scene.radiosity.token, settings, objects, result.kept)
 

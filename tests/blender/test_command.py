@@ -148,7 +148,7 @@ def test_a_read_only_output_is_a_sentence(room, capsys):
 
 def test_a_scene_without_meshes_is_a_sentence(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert "no mesh" in fails(["--output", "baked.blend"], capsys)
+    assert "nothing with faces" in fails(["--output", "baked.blend"], capsys)
 
 
 def test_a_file_that_is_no_blend_file_is_a_sentence(tmp_path, monkeypatch, capsys):

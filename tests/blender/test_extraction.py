@@ -279,9 +279,11 @@ def test_instances_of_geometry_nodes_take_part(made_of):
     leaf = add_plane("Leaf") if made_of == "object" else None
     ground = add_plane("Ground")
     ground.modifiers.new("Scatter", "NODES").node_group = scattering_nodes(leaf)
-    meshes = extracted(ground).scene.meshes
-    assert [mesh.baked for mesh in meshes].count(True) == 1
-    assert len(meshes) == (6 if leaf else 5)
+    for output, baked in (("REFINED", 5), ("ORIGINAL", 1)):
+        extraction = extract(bpy.context, [ground], output)
+        assert [mesh.baked for mesh in extraction.scene.meshes].count(True) == baked
+        assert len(extraction.scene.meshes) == (6 if leaf else 5)
+        assert len(extraction.targets) == 1
 
 
 def test_vertex_instances_take_part_beside_the_object_itself_as_in_cycles():
