@@ -154,3 +154,8 @@ def along_curve(points: Floats) -> Ints:
 def order_along_curve(points: Floats) -> Ints:
     """Order of points in which neighbours mostly lie close together, (n,)."""
     return np.argsort(along_curve(points), kind="stable")
+
+
+def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:
+    """Normals turned over where the side is the back (1)."""
+    return normals * np.where(sides == 1, -1.0, 1.0)[:, None]

@@ -9,31 +9,42 @@ floor that runs on under a block) and are dropped.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from .direct import LUMINANCE
-from .geometry import normalized
-from .sampling import cosine_directions, frames, hashed, triangle_weights
-from .scene import AreaLamp, Floats, Ints, Lamp, SunLamp
+from .scene import Ints
 from .surfaces import Surfaces, signed_volumes
-from .visibility import OFFSET, RayScene
+from .visibility import RayScene
+from .walks import Steps, Walks, from_emitters, from_lamp, from_side, from_world, meets_light, through_cracks, walked
 
 WALKS = 16384
 """Random walks started; a side that takes part in the lighting of a room meets hundreds of them."""
 
 FEWEST_WALKS = 256
-"""Walks that each of many lamps starts: enough to meet the front of what it lights more often than `LEAST_VISITS`."""
+"""Walks that each of many lamps starts, or each of many sides in doubt: enough to meet the front of what a lamp lights
+more often than `LEAST_VISITS`."""
 
-LONGEST_WALK = 16
+MOST_BACK = 1024
+"""Walks that start from a side in doubt at most."""
+
+MOST_IN_DOUBT = 64
+"""Sides in doubt that are asked, the largest first."""
+
+MOST_WAYS = 64
+"""Walks between a side in doubt and light that are looked at whether they pass a crack."""
 
 LEAST_VISITS = 3
 """Visits that make a side lit: one or two may be rays that slipped through an edge."""
 
+LEAST_WAYS = 2
+"""Ways between a side in doubt and light that make it lit: one may have slipped through where three surfaces meet."""
+
 LEAST_SHARE = 0.01
-"""Share of the visits to be expected by its area, and of those to its front, that the back of a lit shell must get."""
+"""Share of the visits to be expected by its area, and of those to its other side, below which a side is in doubt."""
+
+WIDEST_CRACK = 2e-3
+"""Share of the size of a shell up to which an opening is a crack: under a box that does not quite stand on its floor
+there is no light to speak of, but if it counted as lit, its outline on the floor would not be looked for."""
 
 LEAST_INDOORS = 0.8
 """Share of the light from the outside of a lamp in a room that meets something: the room may have a window."""
@@ -50,30 +61,29 @@ EXPECTED_VISITS = 20.0
 
 def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_]:
     """Whether light reaches the front and the back of each shell, (shells, 2) bool."""
-    shells = len(surfaces.closed)
+    shell, shells = surfaces.shell_of_triangle, len(surfaces.closed)
     # The inside is the back, unless the normals look inward.
     inside = (signed_volumes(surfaces) >= 0.0).astype(int)
-    walks = _from_emitters(surfaces, rays, seed)
-    left = surfaces.shell_of_triangle[walks.triangle]
+    walks = from_emitters(surfaces, rays, WALKS, seed)
+    left = shell[walks.triangle]
     is_outward = walks.back != inside[left]
     housing = _housings(surfaces) & _is_indoors(surfaces, rays, walks.taken(np.flatnonzero(is_outward)))
-    visits = _visits(surfaces, rays, walks.taken(np.flatnonzero(~housing[left] | is_outward)), seed)
-    if surfaces.world.any():
-        visits += _visits(surfaces, rays, _from_world(surfaces, rays, seed), seed + 7)
-    shining = [source for source in surfaces.lamps if source.strength.any()]
-    for number, source in enumerate(shining):
-        count = max(WALKS // len(shining), FEWEST_WALKS)
-        visits += _visits(surfaces, rays, _from_lamp(source, surfaces, rays, count, seed + 100 + number), seed + 8)
-    area = np.bincount(surfaces.shell_of_triangle, weights=surfaces.areas, minlength=shells)
+    steps = _light(surfaces, rays, walks.taken(np.flatnonzero(~housing[left] | is_outward)), seed)
+    visits = np.bincount(_side(surfaces, steps), minlength=2 * shells + 1)[:-1].reshape(-1, 2)
+    area = np.bincount(shell, weights=surfaces.areas, minlength=shells)
     expected = visits.sum() * area / area.sum()
-    lit = visits >= LEAST_VISITS
-    # A lit shell's back that a hundredth part of the light of its area finds is reached through a crack under it.
-    lit[:, 1] &= ~((visits[:, 1] < LEAST_SHARE * expected) & (visits[:, 1] < LEAST_SHARE * visits[:, 0]))
     # What is too small to judge is taken as it most likely is: a solid where closed, lit on both sides where open.
     small = expected < EXPECTED_VISITS
+    few = (visits < LEAST_SHARE * expected[:, None]) & (visits < LEAST_SHARE * visits[:, ::-1])
+    lit = (visits >= LEAST_VISITS) & ~few
+    # Into what is closed, light that starts elsewhere does not get.
+    doubt = ~lit & ~(small | housing)[:, None] & ((visits > 0) | ~surfaces.closed[:, None])
+    shines = np.repeat(surfaces.emission.any(axis=1)[:, None], 2, axis=1)
+    shines[np.flatnonzero(housing[shell]), inside[shell[housing[shell]]]] = False
+    lit |= _is_reached(surfaces, rays, steps, doubt & (area > 0.0)[:, None], shines, seed + 300)
     lit[small, 0] = True
     lit[small & ~surfaces.closed, 1] = True
-    emits = np.bincount(surfaces.shell_of_triangle, weights=surfaces.emission.any(axis=1), minlength=shells) > 0
+    emits = np.bincount(shell, weights=surfaces.emission.any(axis=1), minlength=shells) > 0
     lit[emits, 0] = True
     lit[emits & ~surfaces.closed, 1] = True
     lit[np.flatnonzero(housing), inside[housing]] = False
@@ -82,117 +92,100 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     return lit
 
 
-@dataclass(frozen=True, eq=False)
-class Walks:
-    """Where walks are under way: on a side of a triangle (-1: outside of the scene).
-
-    Attributes
-    ----------
-    triangle : (n,) int
-    back : (n,) bool
-    origin, direction : (n, 3) float
-    """
-
-    triangle: Ints
-    back: NDArray[np.bool_]
-    origin: Floats
-    direction: Floats
-
-    def taken(self, which: Ints) -> Walks:
-        """Some of the walks."""
-        return Walks(self.triangle[which], self.back[which], self.origin[which], self.direction[which])
+def _light(surfaces: Surfaces, rays: RayScene, from_emitting: Walks, seed: int) -> Steps:
+    """Walks from all that shines."""
+    kept = np.flatnonzero(~_stays_inside(surfaces, rays, from_emitting))
+    parts = [walked(surfaces, rays, from_emitting.taken(kept), seed)]
+    if surfaces.world.any():
+        parts.append(walked(surfaces, rays, from_world(surfaces, WALKS, seed), seed + 7))
+    shining = [lamp for lamp in surfaces.lamps if lamp.strength.any()]
+    for number, lamp in enumerate(shining):
+        count = max(WALKS // len(shining), FEWEST_WALKS)
+        parts.append(walked(surfaces, rays, from_lamp(lamp, surfaces, rays, count, seed + 100 + number), seed + 8))
+    return Steps.joined(parts)
 
 
-def _visits(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int) -> Floats:
-    """Times that walks met the front and the back of each shell, (shells, 2)."""
-    visits = np.zeros((len(surfaces.closed), 2))
+def _stays_inside(surfaces: Surfaces, rays: RayScene, walks: Walks) -> NDArray[np.bool_]:
+    """Walks that leave the inside of a shell that emits all over and meet it again, (n,): they are of no use."""
     shell = surfaces.shell_of_triangle
-    inward = (walks.triangle >= 0) & _self_lit(surfaces)[shell[walks.triangle]] & walks.back
-    left = walks.triangle
-    for bounce in range(LONGEST_WALK):
-        if len(walks.triangle) == 0:
-            break
-        hits = rays.first_hits(rays.local(walks.origin), walks.direction.astype(np.float32))
-        met = hits.triangle >= 0
-        if bounce == 0:
-            met &= ~(inward & (shell[hits.triangle] == shell[left]))
-        triangle, back = hits.triangle[met].astype(np.int64), hits.back[met]
-        np.add.at(visits, (shell[triangle], back.astype(np.int64)), 1.0)
-        reflecting = surfaces.reflectance[triangle].any(axis=1)
-        weights = hits.weights()[met].astype(np.float64)[reflecting]
-        walks = _leaving(surfaces, rays, triangle[reflecting], back[reflecting], weights, seed + bounce + 10)
-    return visits
+    stays = _self_lit(surfaces)[shell[walks.triangle]] & walks.back
+    inward = walks.taken(np.flatnonzero(stays))
+    hits = rays.first_hits(rays.local(inward.origin), inward.direction.astype(np.float32))
+    stays[stays] = (hits.triangle >= 0) & (shell[hits.triangle] == shell[inward.triangle])
+    return stays
 
 
-def _leaving(
-    surfaces: Surfaces, rays: RayScene, triangle: Ints, back: NDArray[np.bool_], weights: Floats, seed: int
-) -> Walks:
-    """Walks that leave sides of triangles at barycentric weights (n, 2), with cosine distribution."""
-    normal = side_normals(surfaces.normals[triangle], back)
-    a, b, c = (surfaces.points[surfaces.triangles[triangle, k]] for k in range(3))
-    origin = a + (b - a) * weights[:, :1] + (c - a) * weights[:, 1:] + normal * (OFFSET / rays.scale)
-    return Walks(triangle, back, origin, cosine_directions(hashed(np.arange(len(triangle)), 2, seed), normal))
+def _side(surfaces: Surfaces, steps: Steps) -> Ints:
+    """The side that steps end on: twice the shell, plus 1 for the back; beyond all of them outside of the scene."""
+    side = 2 * surfaces.shell_of_triangle[steps.triangle] + steps.back
+    return np.where(steps.triangle >= 0, side, 2 * len(surfaces.closed))
 
 
-def _from_emitters(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
-    """Walks from emitting triangles in proportion to their power, from both sides."""
-    power = np.cumsum(surfaces.areas * (surfaces.emission @ LUMINANCE))
-    if power[-1] <= 0.0:
-        nothing = np.zeros((0, 3))
-        return Walks(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool), nothing, nothing)
-    step = (np.arange(WALKS) + 0.5) / WALKS * power[-1]
-    triangle = np.minimum(np.searchsorted(power, step, side="right"), len(power) - 1)
-    drawn = hashed(np.arange(WALKS), 3, seed + 1)
-    weights = triangle_weights(drawn[:, 1:3])
-    return _leaving(surfaces, rays, triangle, drawn[:, 0] < 0.5, weights, seed + 2)
+def _is_reached(
+    surfaces: Surfaces,
+    rays: RayScene,
+    light: Steps,
+    doubt: NDArray[np.bool_],
+    shines: NDArray[np.bool_],
+    seed: int,
+) -> NDArray[np.bool_]:
+    """Whether light reaches the sides in doubt, (shells, 2), by ways that are wider than a crack.
+
+    Walks from what shines find an opening the sooner the less room there is for them; walks from the side itself, the
+    less room there is on its own side: under a wide sky it is these that find the window of a house.
+
+    Parameters
+    ----------
+    light : Steps
+        From what shines.
+    doubt : (shells, 2) bool
+    shines : (triangles, 2) bool
+        Sides that emit.
+    """
+    shell = surfaces.shell_of_triangle
+    area = np.bincount(shell, weights=surfaces.areas, minlength=len(doubt))
+    asked = np.flatnonzero(doubt)
+    asked = np.sort(asked[np.argsort(-area[asked >> 1], kind="stable")[:MOST_IN_DOUBT]])
+    reached = np.zeros(doubt.size, dtype=bool)
+    if len(asked) == 0:
+        return reached.reshape(-1, 2)
+    each = int(np.clip(WALKS // len(asked), FEWEST_WALKS, MOST_BACK))
+    starts = [
+        from_side(surfaces, rays, np.flatnonzero(shell == side >> 1), bool(side & 1), each, seed + 2 * k)
+        for k, side in enumerate(asked)
+    ]
+    back = walked(surfaces, rays, Walks.joined(starts), seed + 1000)
+    low, high = np.full((len(doubt), 3), np.inf), np.full((len(doubt), 3), -np.inf)
+    corners = surfaces.points[surfaces.triangles]
+    np.minimum.at(low, shell, corners.min(axis=1))
+    np.maximum.at(high, shell, corners.max(axis=1))
+    crack = WIDEST_CRACK * np.linalg.norm(high - low, axis=1)
+    met = np.flatnonzero(np.isin(_side(surfaces, light), asked))
+    arrived = np.flatnonzero(meets_light(surfaces, rays, back, shines))
+    ways = np.zeros(doubt.size)
+    for steps, last, side in (
+        (light, met, _side(surfaces, light)[met]),
+        (back, arrived, asked[back.walk[arrived] // each]),
+    ):
+        chosen = _first_of_each(side, steps.walk[last])
+        last, side = last[chosen], side[chosen]
+        step, way = steps.leading_to(last)
+        narrow = through_cracks(rays, steps.taken(step), crack[side[way] >> 1])
+        wide = np.bincount(way, weights=narrow, minlength=len(last)) == 0
+        ways += np.bincount(side[wide], minlength=doubt.size)
+    reached[asked] = ways[asked] >= LEAST_WAYS
+    return reached.reshape(-1, 2)
 
 
-def _from_world(surfaces: Surfaces, rays: RayScene, seed: int) -> Walks:
-    """Walks inward from a sphere around the scene: with cosine distribution they cross it evenly from everywhere."""
-    drawn = hashed(np.arange(WALKS), 4, seed + 3)
-    outward = _even_directions(drawn)
-    middle, radius = _sphere_around(surfaces)
-    outside = np.full(WALKS, -1, dtype=np.int64)
-    origin = middle + radius * outward
-    return Walks(outside, np.zeros(WALKS, dtype=bool), origin, cosine_directions(drawn[:, 2:], -outward))
-
-
-def _sphere_around(surfaces: Surfaces) -> tuple[Floats, float]:
-    """Middle and radius of a sphere that holds all triangles."""
-    used = surfaces.points[surfaces.triangles.ravel()]
-    low, high = used.min(axis=0), used.max(axis=0)
-    return (low + high) / 2.0, 0.5 * float(np.linalg.norm(high - low)) * 1.01
-
-
-def _from_lamp(lamp: Lamp, surfaces: Surfaces, rays: RayScene, count: int, seed: int) -> Walks:
-    """So many walks from a lamp, in the directions that it shines in."""
-    drawn = hashed(np.arange(count), 4, seed)
-    if isinstance(lamp, SunLamp):
-        middle, radius = _sphere_around(surfaces)
-        direction = np.broadcast_to(lamp.direction, (count, 3))
-        across = frames(direction, np.zeros(count))[:, :2].astype(np.float64)
-        place = np.einsum("nk,nkx->nx", 2.0 * drawn[:, :2] - 1.0, across)
-        origin = middle + radius * (place - direction)
-    elif isinstance(lamp, AreaLamp):
-        normal = np.broadcast_to(lamp.normal, (count, 3))
-        # A rectangle's corners lie outside of its ellipse, which is no harm here.
-        origin = lamp.centre + (2.0 * drawn[:, :2] - 1.0) @ lamp.half_axes + normal * (OFFSET / rays.scale)
-        direction = cosine_directions(drawn[:, 2:], normal)
-    else:
-        direction = _even_directions(drawn)
-        if lamp.cone is not None:
-            # Even over the cone in the lamp's own space: between its edge and its axis.
-            local = _even_directions(np.stack([drawn[:, 0] * (1.0 - lamp.cone.cosine) / 2.0, drawn[:, 1]], axis=1))
-            direction = normalized(local * [1.0, 1.0, -1.0] @ np.linalg.inv(lamp.cone.inverse).T)
-        origin = np.broadcast_to(lamp.centre, (count, 3))
-    return Walks(np.full(count, -1, dtype=np.int64), np.zeros(count, dtype=bool), origin, direction)
-
-
-def _even_directions(drawn: Floats) -> Floats:
-    """Directions spread evenly over the sphere by the first two of the numbers drawn, from +z on, (n, 3)."""
-    z, turn = 1.0 - 2.0 * drawn[:, 0], 2.0 * np.pi * drawn[:, 1]
-    flat = np.sqrt(np.maximum(0.0, 1.0 - z * z))
-    return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
+def _first_of_each(side: Ints, walk: Ints) -> Ints:
+    """Entries (k,) that are the first of their walk on their side, `MOST_WAYS` of each side at most."""
+    order = np.lexsort([walk, side])
+    side, walk = side[order], walk[order]
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = (np.diff(side) != 0) | (np.diff(walk) != 0)
+    order, side = order[new], side[new]
+    rank = np.arange(len(side)) - np.searchsorted(side, side)
+    return order[rank < MOST_WAYS]
 
 
 def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
@@ -243,8 +236,3 @@ def _is_indoors(surfaces: Surfaces, rays: RayScene, walks: Walks) -> NDArray[np.
     met = np.bincount(shell, weights=hits.triangle >= 0, minlength=count)
     result: NDArray[np.bool_] = met >= LEAST_INDOORS * np.bincount(shell, minlength=count)
     return result
-
-
-def side_normals(normals: Floats, sides: Ints | NDArray[np.bool_]) -> Floats:
-    """Normals turned over where the side is the back (1)."""
-    return normals * np.where(sides == 1, -1.0, 1.0)[:, None]

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .geometry import largest_edges, lengths, normalized
-from .reachability import side_normals
+from .geometry import largest_edges, lengths, normalized, side_normals
 from .scene import Floats, Ints
 from .subdivision import Faces
 from .surfaces import Surfaces

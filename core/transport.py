@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .form_factors import point_to_triangle
+from .geometry import side_normals
 from .location import Locator
 from .patches import PatchTree
-from .reachability import side_normals
 from .rows import BURIED, COVER_GAP, ESCAPED, Cover, Rows, Shares, all_shares, joined, shares_to, split_shares
 from .sampling import Patterns, Singles, frames, hashed, sequence, shifted, triangle_weights
 from .scene import Floats, Ints

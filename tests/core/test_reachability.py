@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radiosity_bake.core.reachability import lit_sides
-from radiosity_bake.core.scene import Scene, surface_mesh
+from radiosity_bake.core.scene import Scene, SunLamp, surface_mesh
 from radiosity_bake.core.surfaces import join
 from radiosity_bake.core.visibility import RayScene
 
@@ -19,9 +19,9 @@ ROOM = exact.closed_room((2, 2, 2), reflectance=0.5)
 SHEET = exact.rectangle("sheet", (0.5, 0.5, 1.0), (1, 0, 0), (0, 1, 0), reflectance=0.5)
 
 
-def lit(*meshes, world=DARK, seed=0):
+def lit(*meshes, world=DARK, lamps=(), seed=0):
     """Front and back of each mesh's first shell, by name."""
-    surfaces = join(Scene(meshes, np.asarray(world, dtype=float)))
+    surfaces = join(Scene(meshes, np.asarray(world, dtype=float), lamps))
     sides = lit_sides(surfaces, RayScene(surfaces.points, surfaces.triangles, 2), seed)
     first = [np.flatnonzero(surfaces.mesh_of_triangle == k)[0] for k in range(len(meshes))]
     return {m.name: tuple(sides[surfaces.shell_of_triangle[f]].tolist()) for m, f in zip(meshes, first, strict=True)}
@@ -114,6 +114,47 @@ def test_the_world_reaches_a_closed_room_on_its_outside_alone():
 def test_the_world_enters_through_a_window():
     walls = exact.box_walls((2, 2, 2), reflectance=0.5)
     assert lit(*walls[:5], world=(1, 1, 1))["floor"] == (True, True)
+
+
+def pierced_room(window):
+    """Return a room of 2 x 2 x 2 of one sheet, its front inward, with a window in the middle of the wall x = 2."""
+    room = exact.closed_room((2, 2, 2), reflectance=0.5)
+    kept = room.triangles[(room.vertices[room.triangles][..., 0] < 2.0).any(axis=1)]
+    ring = (0.0, 1.0 - window / 2, 1.0 + window / 2, 2.0)
+    corners = [(2.0, y, z) for z in ring for y in ring]
+    first = [len(room.vertices) + 4 * j + i for j in range(3) for i in range(3) if (i, j) != (1, 1)]
+    around = [t for a in first for t in ((a, a + 5, a + 1), (a, a + 4, a + 5))]
+    return surface_mesh("room", [*room.vertices, *corners], [*kept, *around], reflectance=0.5)
+
+
+GROUND = exact.rectangle("ground", (-10, -10, -0.5), (20, 0, 0), (0, 20, 0), reflectance=0.5)
+
+
+@pytest.mark.parametrize("window", [0.2, 0.5, 1.9])
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_the_sky_gets_into_a_room_of_one_sheet_through_a_window_of_any_size(window, turned_over):
+    room = pierced_room(window)
+    assert lit(flipped(room) if turned_over else room, GROUND, world=(1, 1, 1))["room"] == (True, True)
+
+
+@pytest.mark.parametrize("window", [0.2, 0.5, 1.9])
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_light_from_within_gets_out_to_a_wall_and_back_to_the_outside(window, turned_over):
+    room, wall = pierced_room(window), exact.rectangle("wall", (3, -1, 0), (0, 0, 3), (0, 4, 0), reflectance=0.5)
+    assert lit(flipped(room) if turned_over else room, LAMP, wall)["room"] == (True, True)
+
+
+def test_the_sun_gets_into_a_room_of_one_sheet_on_a_wide_ground():
+    wide = exact.rectangle("ground", (-100, -100, -0.5), (200, 0, 0), (0, 200, 0), reflectance=0.5)
+    sun = SunLamp("sun", np.array([-0.8, 0.0, -0.6]), 0.0, np.ones(3))
+    assert lit(pierced_room(0.5), wide, lamps=(sun,))["room"] == (True, True)
+
+
+@pytest.mark.parametrize("gap", [1e-4, 1e-3])
+def test_a_box_without_a_bottom_a_little_above_the_floor_is_dark_inside(gap):
+    box = block("block", (0.5, 0.5, gap), (1, 1, 0.8), bottom=False)
+    assert lit(ROOM, LAMP, box)["block"] == (True, False)
+    assert lit(GROUND, replace(box, vertices=box.vertices - [0, 0, 0.5]), world=(1, 1, 1))["block"] == (True, False)
 
 
 def test_what_no_light_reaches_counts_as_lit_in_front():

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import HAIR, join
 from radiosity_bake.core.visibility import OFFSET, RayScene
@@ -87,3 +87,13 @@ def test_a_lamp_in_the_ceiling_does_not_light_what_is_behind_it(overlap):
     behind = (middle[:, 2] > 1.99) & (np.abs(middle[:, :2] - 1.0).max(axis=1) < 0.27)
     assert behind.sum() > 5
     assert mesh.irradiance[behind].max() == 0.0
+
+
+def test_the_wall_before_an_open_box_of_one_sheet_is_lit():
+    box = exact.closed_room((2, 2, 2), reflectance=0.5, name="box")
+    open_side = (box.vertices[box.triangles][..., 0] == 2.0).all(axis=1)
+    box = surface_mesh("box", box.vertices, box.triangles[~open_side], reflectance=0.5)
+    wall = exact.rectangle("wall", (3, -1, 0), (0, 0, 3), (0, 4, 0), reflectance=0.5)
+    mesh = bake(Scene((box, LAMP, wall), DARK), DRAFT).meshes[2]
+    # Its darkest corner is lit by the wall's own light, back from the outside of the box: a twentieth of the mean.
+    assert mesh.irradiance.min() > 0.0
