@@ -114,13 +114,30 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     clock.start("Preparing", 0.0, 0.02)
     surfaces = join(scene)
     check_light(surfaces)
-    with closing(RayScene(surfaces.traced_points(), surfaces.triangles, settings.threads)) as rays:
+    with closing(_ray_scene(surfaces, surfaces.seen, surfaces.shadow, settings)) as rays:
         return _bake(scene, surfaces, rays, settings, clock)
+
+
+def _ray_scene(
+    surfaces: Surfaces, seen: NDArray[np.bool_], shadow: NDArray[np.bool_], settings: BakeSettings
+) -> RayScene:
+    return RayScene(surfaces.traced_points(), surfaces.triangles, settings.threads, seen, shadow)
+
+
+def _lit_sides(surfaces: Surfaces, rays: RayScene, settings: BakeSettings) -> NDArray[np.bool_]:
+    """Whether light reaches the front and the back of each shell, (shells, 2), through what lets some of it pass."""
+    met = surfaces.seen & surfaces.shadow
+    if met.all():
+        return lit_sides(surfaces, rays, settings.seed)
+    with closing(_ray_scene(surfaces, met, met, settings)) as solids:
+        lit = lit_sides(surfaces, solids, settings.seed)
+        rays.rays, rays.seconds = rays.rays + solids.rays, rays.seconds + solids.seconds
+    return lit
 
 
 def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettings, clock: Clock) -> BakeResult:
     effort = EFFORTS[settings.quality]
-    lit = lit_sides(surfaces, rays, settings.seed)
+    lit = _lit_sides(surfaces, rays, settings)
 
     walked = rays.rays
     most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX

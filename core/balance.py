@@ -243,12 +243,14 @@ def energy(balance: Balance, solution: Solution, from_lamps: Floats, surfaces: S
         Irradiance over pi that elements get of lamps.
     """
     area = np.pi * balance.areas[:, None]
+    # What light goes through takes none of it away.
+    met = area * balance.means.of(surfaces.seen[:, None].astype(np.float64))
     emitted = float((area * balance.emission).sum())
-    world = float((area * balance.escape[:, None] * surfaces.world).sum())
-    lamps = float((area * from_lamps).sum())
-    reflected = float((area * solution.reflected).sum())
-    absorbed = float((area * (1.0 - balance.reflectance) * solution.incident).sum())
-    escaped = float((area * (balance.emission + solution.reflected) * balance.escape[:, None]).sum())
+    world = float((met * balance.escape[:, None] * surfaces.world).sum())
+    lamps = float((met * from_lamps).sum())
+    reflected = float((met * solution.reflected).sum())
+    absorbed = float((met * (1.0 - balance.reflectance) * solution.incident).sum())
+    escaped = float(((area * balance.emission + met * solution.reflected) * balance.escape[:, None]).sum())
     total = emitted + world + lamps
     return {
         "emitted": emitted,

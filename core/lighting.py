@@ -208,7 +208,8 @@ def result_of(
             *warnings,
             *story.warnings,
             *_solution_warnings(solution),
-            *imbalance_warnings(balance),
+            # Light that surfaces both receive and let pass is there twice.
+            *(imbalance_warnings(balance) if surfaces.shadow[surfaces.seen].all() else ()),
         ],
     }
     return BakeResult(meshes, report)

@@ -73,7 +73,7 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     area = np.bincount(shell, weights=surfaces.areas, minlength=shells)
     expected = visits.sum() * area / area.sum()
     # What is too small to judge is taken as it most likely is: a solid where closed, lit on both sides where open.
-    small = expected < EXPECTED_VISITS
+    small = (expected < EXPECTED_VISITS) | _passable(surfaces)
     few = (visits < LEAST_SHARE * expected[:, None]) & (visits < LEAST_SHARE * visits[:, ::-1])
     lit = (visits >= LEAST_VISITS) & ~few
     # Into what is closed, light that starts elsewhere does not get.
@@ -186,6 +186,15 @@ def _first_of_each(side: Ints, walk: Ints) -> Ints:
     order, side = order[new], side[new]
     rank = np.arange(len(side)) - np.searchsorted(side, side)
     return order[rank < MOST_WAYS]
+
+
+def _passable(surfaces: Surfaces) -> NDArray[np.bool_]:
+    """Shells that some light goes through, (shells,): walks take no notice of them."""
+    passable = ~(surfaces.seen & surfaces.shadow)
+    result: NDArray[np.bool_] = (
+        np.bincount(surfaces.shell_of_triangle, weights=passable, minlength=len(surfaces.closed)) > 0
+    )
+    return result
 
 
 def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:

@@ -114,7 +114,7 @@ def _arrays(value: object, known: set[int]) -> Iterator[NDArray[Any]]:
 def shape_of(mesh: SurfaceMesh) -> bytes:
     """A number that changes with anything about a mesh but its colours and its name."""
     digest = blake2b(digest_size=16)
-    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, np.array(mesh.baked)):
+    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, np.array([mesh.baked, mesh.seen, mesh.shadow])):
         digest.update(repr((array.shape, array.dtype.str)).encode())
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()

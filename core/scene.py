@@ -33,6 +33,10 @@ class SurfaceMesh:
         Emitted radiance of each triangle, linear RGB; both sides emit, as in Cycles.
     baked : bool
         Whether values are wanted on this mesh; it takes part in the light transport either way.
+    seen : bool
+        Whether reflected light meets it. If not, it sends no light on that it receives, and hides none behind it.
+    shadow : bool
+        Whether it hides lamps and emitters.
     """
 
     name: str
@@ -42,6 +46,8 @@ class SurfaceMesh:
     reflectance: Floats
     emission: Floats
     baked: bool = True
+    seen: bool = True
+    shadow: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +181,8 @@ def surface_mesh(
     emission: object = (0.0, 0.0, 0.0),
     corner_normals: object | None = None,
     baked: bool = True,
+    seen: bool = True,
+    shadow: bool = True,
 ) -> SurfaceMesh:
     """Make a `SurfaceMesh` from anything array-like, colours given once or for each triangle.
 
@@ -206,4 +214,6 @@ def surface_mesh(
         np.array(np.broadcast_to(np.asarray(reflectance, dtype=np.float64), shape)),
         np.array(np.broadcast_to(np.asarray(emission, dtype=np.float64), shape)),
         baked,
+        seen,
+        shadow,
     )

@@ -46,6 +46,8 @@ class Surfaces:
     closed : (shells,) bool
         Whether the shell has an inside.
     baked : (t,) bool
+    seen, shadow : (t,) bool
+        Whether reflected light meets it, and whether it hides lamps and emitters.
     extent : float
         Largest edge of the bounding box.
     world : (3,) float
@@ -71,6 +73,8 @@ class Surfaces:
     shell_of_triangle: Ints
     closed: NDArray[np.bool_]
     baked: NDArray[np.bool_]
+    seen: NDArray[np.bool_]
+    shadow: NDArray[np.bool_]
     extent: float
     world: Floats
     lamps: tuple[Lamp, ...]
@@ -132,7 +136,7 @@ def join(scene: Scene) -> Surfaces:
     shell, closed = triangle_shells(places[triangles], len(points))
     counts = [len(keep) for keep in kept]
     mesh_of_triangle = np.repeat(np.arange(len(counts)), counts)
-    flags = np.array([mesh.baked for mesh in scene.meshes])
+    flags = np.array([(mesh.baked, mesh.seen, mesh.shadow) for mesh in scene.meshes])[mesh_of_triangle]
     normals = normalized(cross)
     corner_normals = np.concatenate([m.corner_normals[k] for m, k in zip(scene.meshes, kept, strict=True)]).astype(
         float
@@ -149,7 +153,9 @@ def join(scene: Scene) -> Surfaces:
         first_point_of_mesh=first_point,
         shell_of_triangle=shell,
         closed=closed,
-        baked=flags[mesh_of_triangle],
+        baked=flags[:, 0],
+        seen=flags[:, 1],
+        shadow=flags[:, 2],
         extent=extent,
         warnings=tuple(warnings),
         **_colours(scene, kept),

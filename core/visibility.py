@@ -72,6 +72,31 @@ class Hits:
         return np.stack([self.u, self.v], axis=1)
 
 
+class _Triangles:
+    """Some of the triangles as the ray library has them."""
+
+    def __init__(self, points: NDArray[np.float32], triangles: Ints, chosen: NDArray[np.bool_]) -> None:
+        mesh_construction, rtcore_scene = _library()
+        self._chosen = None if chosen.all() else np.flatnonzero(chosen).astype(np.int32)
+        # The ray library takes no empty mesh; a triangle without area is never met.
+        kept = triangles[chosen] if chosen.any() else np.zeros((1, 3))
+        self._scene = rtcore_scene.EmbreeScene()
+        mesh_construction.TriangleMesh(self._scene, points, kept.astype(np.int32))
+        # Embree builds its tree at the first ray; do it here, on one thread.
+        self._scene.run(np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32), query="OCCLUDED")
+
+    def run(self, origins: NDArray[np.float32], directions: NDArray[np.float32], **options: Any) -> Any:
+        """Trace rays, as the ray library does."""
+        return self._scene.run(origins, directions, **options)
+
+    def number(self, met: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Numbers among all triangles of those that were met, -1 for none."""
+        if self._chosen is None:
+            return met
+        known: NDArray[np.int32] = np.append(self._chosen, np.int32(-1))[met]
+        return known
+
+
 class RayScene:
     """Triangles that rays can be traced against, from several threads.
 
@@ -81,6 +106,8 @@ class RayScene:
     triangles : (t, 3) int
     threads : int
         0 takes every core.
+    seen, shadow : (t,) bool or None
+        Triangles that `first_hits` meets, and those that hide things in `visible`; None for all.
 
     Attributes
     ----------
@@ -93,8 +120,14 @@ class RayScene:
         Local units for a scene unit.
     """
 
-    def __init__(self, points: Floats, triangles: Ints, threads: int = 0) -> None:
-        mesh_construction, rtcore_scene = _library()
+    def __init__(
+        self,
+        points: Floats,
+        triangles: Ints,
+        threads: int = 0,
+        seen: NDArray[np.bool_] | None = None,
+        shadow: NDArray[np.bool_] | None = None,
+    ) -> None:
         self.workers = Workers(threads)
         used = points[triangles.ravel()]
         low, high = used.min(axis=0), used.max(axis=0)
@@ -104,10 +137,10 @@ class RayScene:
         self.rays = 0
         self.seconds = 0.0
         self._counting = threading.Lock()
-        self._scene = rtcore_scene.EmbreeScene()
-        mesh_construction.TriangleMesh(self._scene, self.local(points), triangles.astype(np.int32))
-        # Embree builds its tree at the first ray; do it here, on one thread.
-        self._scene.run(np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32), query="OCCLUDED")
+        chosen = [np.ones(len(triangles), dtype=bool) if mask is None else mask for mask in (seen, shadow)]
+        self._of_seen = self._of_shadow = _Triangles(self.local(points), triangles, chosen[0])
+        if (chosen[0] != chosen[1]).any():
+            self._of_shadow = _Triangles(self.local(points), triangles, chosen[1])
 
     def close(self) -> None:
         """End the threads."""
@@ -117,9 +150,11 @@ class RayScene:
         """Positions (..., 3) in the ray library's own coordinates, centred and scaled to 1."""
         return ((points - self._centre) * self.scale).astype(np.float32)
 
-    def _run(self, origins: NDArray[np.float32], directions: NDArray[np.float32], **options: Any) -> Any:
+    def _run(
+        self, triangles: _Triangles, origins: NDArray[np.float32], directions: NDArray[np.float32], **options: Any
+    ) -> Any:
         start = time.perf_counter()
-        answer = self._scene.run(origins, directions, **options)
+        answer = triangles.run(origins, directions, **options)
         elapsed = time.perf_counter() - start
         with self._counting:
             self.seconds += elapsed
@@ -128,9 +163,9 @@ class RayScene:
 
     def first_hits(self, origins: NDArray[np.float32], directions: NDArray[np.float32]) -> Hits:
         """Trace rays (n, 3) from origins in local coordinates, lifted off their surface by `OFFSET`."""
-        answer = self._run(origins, directions, query="INTERSECT", output=True)
+        answer = self._run(self._of_seen, origins, directions, query="INTERSECT", output=True)
         back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
-        return Hits(answer["primID"], answer["u"], answer["v"], answer["tfar"], back)
+        return Hits(self._of_seen.number(answer["primID"]), answer["u"], answer["v"], answer["tfar"], back)
 
     def lifted(self, points: Floats, normals: Floats) -> tuple[NDArray[np.float32], Floats]:
         """Where rays start that leave a surface at points (n, 3) on the side of its normals.
@@ -158,5 +193,7 @@ class RayScene:
         starts = np.repeat(origins, toward.shape[1], axis=0)
         # The ray library counts in lengths of the direction.
         ends = np.ones(len(starts), dtype=np.float32)
-        answer: NDArray[np.int32] = self._run(starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED")
+        answer: NDArray[np.int32] = self._run(
+            self._of_shadow, starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED"
+        )
         return answer.reshape(toward.shape[:2]) < 0
