@@ -228,7 +228,7 @@ def meets_light(surfaces: Surfaces, rays: RayScene, steps: Steps, shines: NDArra
     for lamp in surfaces.lamps:
         if not lamp.strength.any():
             continue
-        facing = np.flatnonzero(unoccluded(lamp, steps.end[on], normal[on]))
+        facing = np.flatnonzero(unoccluded(lamp, steps.end[on], normal))
         at = steps.end[on[facing]]
         if isinstance(lamp, SunLamp):
             middle = at - lamp.direction * (BEYOND / rays.scale)
