@@ -15,6 +15,7 @@ LARGEST = 2**31 - 1
 """Largest whole number that Blender's settings hold."""
 
 OUTPUTS = ("REFINED", "ORIGINAL")
+MATERIALS = ("PLAIN", "TEXTURED")
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,9 @@ class BakeSettings:
         rays, and a warning.
     keep_transport : bool
         Whether the result holds what the rays met, so that it can be lit again; that, too, stays below the limit.
+    material : str
+        Of whoever stores the result: `'PLAIN'` shows the radiosity as it is, `'TEXTURED'` the irradiance on the
+        colours and textures of the original materials.
     """
 
     threshold: float = 0.02
@@ -58,6 +62,7 @@ class BakeSettings:
     threads: int = 0
     memory_limit: int = 2048
     keep_transport: bool = True
+    material: str = "PLAIN"
 
     def __post_init__(self) -> None:
         if not (0.0 < self.threshold <= 1.0):
@@ -70,6 +75,7 @@ class BakeSettings:
             ("Method", self.method, METHODS),
             ("Quality", self.quality, QUALITIES),
             ("Output", self.output, OUTPUTS),
+            ("Material", self.material, MATERIALS),
         ):
             if value not in allowed:
                 raise SettingsError(f"{name} is {value!r}; choose one of {', '.join(allowed)}")

@@ -54,7 +54,7 @@ def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, r
     """Store `result`, then write and return the report; `read` is the seconds that the extraction took."""
     began = time.perf_counter()
     scene = scene_of(extraction)
-    objects, cautions = store(scene, extraction, result, settings.output)
+    objects, cautions = store(scene, extraction, result, settings)
     remember(scene, extraction, settings, result, objects)
     report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
     scene.radiosity.report = json.dumps(report)

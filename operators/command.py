@@ -13,7 +13,7 @@ import bpy
 
 from ..core.errors import BakeError, Cancelled
 from ..core.progress import Progress
-from ..core.settings import METHODS, OUTPUTS, QUALITIES, BakeSettings
+from ..core.settings import MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_writable, replaced
 from .participants import rendered_objects
@@ -105,6 +105,7 @@ def _parser() -> argparse.ArgumentParser:
     what = parser.add_argument_group("what is baked")
     what.add_argument("--object", metavar="NAME", action="append", help="bake this mesh only; may be given repeatedly")
     what.add_argument("--bake-to", choices=OUTPUTS, help="new refined meshes, or the meshes as they are")
+    what.add_argument("--material", choices=MATERIALS, help="the light as it is, or on your materials' textures")
     how = parser.add_argument_group("how it is baked")
     how.add_argument("--threshold", type=float, help="share of another surface's light above which one is split")
     how.add_argument(
@@ -160,6 +161,7 @@ def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettin
         "threads": options.threads,
         "memory_limit": options.memory_limit,
         "keep_transport": None,
+        "material": options.material,
     }
     return BakeSettings(**{name: getattr(saved, name) if value is None else value for name, value in given.items()})
 

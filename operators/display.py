@@ -15,14 +15,14 @@ RADIOSITY_BACK = "Radiosity Back"
 IRRADIANCE_BACK = "Irradiance Back"
 ATTRIBUTES = (RADIOSITY, IRRADIANCE, RADIOSITY_BACK, IRRADIANCE_BACK)
 
-_MARK = "radiosity_display"
+MARK = "radiosity_display"
 """Custom property that tells our materials from the user's, whatever they are renamed to."""
 _NAMES = {"FRONT": "Radiosity Display", "BOTH": "Radiosity Display Two-Sided"}
 
 
 def is_display(material: bpy.types.Material | None) -> bool:
     """Return whether `material` is one that a bake made to show its colours."""
-    return material is not None and _MARK in material
+    return material is not None and MARK in material
 
 
 def display_material(both_sides: bool, journal: Journal) -> bpy.types.Material:
@@ -35,37 +35,63 @@ def display_material(both_sides: bool, journal: Journal) -> bpy.types.Material:
     """
     sides = "BOTH" if both_sides else "FRONT"
     for material in bpy.data.materials:
-        if material.library is None and material.get(_MARK) == sides:
+        if material.library is None and material.get(MARK) == sides:
             return material
-    material = bpy.data.materials.new(_NAMES[sides])
+    material = new_material(_NAMES[sides], journal)
+    mark(material, sides)
+    _build_nodes(material.node_tree, both_sides)
+    return material
+
+
+def new_material(name: str, journal: Journal) -> bpy.types.Material:
+    """Return a new material that is made of nodes."""
+    material = bpy.data.materials.new(name)
     journal.on_failure(bpy.data.materials.remove, material)
-    material[_MARK] = sides
     if bpy.app.version < (5, 0, 0):
         material.use_nodes = True
-    _build_nodes(material.node_tree, both_sides)
+    return material
+
+
+def mark(material: bpy.types.Material, kind: str) -> None:
+    """Have `material` known as one of ours."""
+    material[MARK] = kind
     # The colours hold all the light there is: to sample them as lamps as well would only cost Cycles time.
     if hasattr(material, "cycles"):
         material.cycles.emission_sampling = "NONE"
-    return material
 
 
 def _build_nodes(tree: bpy.types.NodeTree, both_sides: bool) -> None:
     tree.nodes.clear()
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    output.location = (600.0, 0.0)
     front = _emission_of_attribute(tree, RADIOSITY, 0.0)
+    # The glTF exporter of Blender knows an unlit material with vertex colours by a switch for camera rays.
+    switch = tree.nodes.new("ShaderNodeMixShader")
+    switch.location = (400.0, 0.0)
+    rays = tree.nodes.new("ShaderNodeLightPath")
+    rays.location = (200.0, 300.0)
+    tree.links.new(rays.outputs["Is Camera Ray"], switch.inputs[0])
+    tree.links.new(front.outputs[0], switch.inputs[1])
+    tree.links.new(front.outputs[0], switch.inputs[2])
+    _output(tree, switch, "ALL", 0.0)
     if not both_sides:
-        tree.links.new(front.outputs[0], output.inputs["Surface"])
         return
     back = _emission_of_attribute(tree, RADIOSITY_BACK, -200.0)
     geometry = tree.nodes.new("ShaderNodeNewGeometry")
-    geometry.location = (200.0, 300.0)
+    geometry.location = (200.0, -300.0)
     mix = tree.nodes.new("ShaderNodeMixShader")
-    mix.location = (400.0, 0.0)
+    mix.location = (400.0, -200.0)
     tree.links.new(geometry.outputs["Backfacing"], mix.inputs[0])
     tree.links.new(front.outputs[0], mix.inputs[1])
     tree.links.new(back.outputs[0], mix.inputs[2])
-    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    # What is for one renderer goes before what is for all, which is all that the exporter looks at.
+    _output(tree, mix, "CYCLES", -200.0)
+    _output(tree, mix, "EEVEE", -400.0)
+
+
+def _output(tree: bpy.types.NodeTree, shader: bpy.types.Node, target: str, height: float) -> None:
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    output.target = target
+    output.location = (600.0, height)
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
 
 
 def _emission_of_attribute(tree: bpy.types.NodeTree, name: str, height: float) -> bpy.types.Node:

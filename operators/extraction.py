@@ -322,6 +322,7 @@ class _Reader:
         # Its own mesh first, so that its slots stay as they are.
         parts = sorted(parts, key=lambda part: not np.array_equal(part.matrix, matrix))
         local = joined_mesh(parts, matrix)
+        materials = local.materials if len(parts) > 1 else parts[0].materials
         return Target(
             uid=owner.session_uid,
             name=owner.name,
@@ -332,6 +333,7 @@ class _Reader:
             local=local,
             fingerprint=fingerprint(owner.data),
             same_corners=owner.type == "MESH" and _has_corners_of(owner.data, local),
+            materials=tuple(material and material.name_full for material in materials),
             layers=joined_layers([part.layers for part in parts], [part.local for part in parts]),
         )
 

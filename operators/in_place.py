@@ -21,6 +21,7 @@ from .local_mesh import local_mesh
 from .record import BAKED_IN_PLACE
 from .refined import baked_values
 from .targets import Target
+from .textured import Displays
 from .transfer import nearest_corners
 
 
@@ -41,7 +42,9 @@ def check_names(obj: bpy.types.Object) -> None:
             )
 
 
-def store_in_place(obj: bpy.types.Object, target: Target, baked: BakedMesh, journal: Journal) -> None:
+def store_in_place(
+    obj: bpy.types.Object, target: Target, baked: BakedMesh, displays: Displays, journal: Journal
+) -> None:
     """Write the values of `baked` on the corners of the mesh of `obj`, and show them."""
     remember_record(obj, journal)
     if obj.radiosity.kind != BAKED_IN_PLACE:
@@ -54,7 +57,7 @@ def store_in_place(obj: bpy.types.Object, target: Target, baked: BakedMesh, jour
     values = _values_of_corners(obj.data, target, baked)
     _make_room(obj, values, journal)
     write_colours(obj.data, values)
-    _show(obj, baked.radiosity_back is not None, journal)
+    _show(obj, baked.radiosity_back is not None, displays, journal)
 
 
 def _own_mesh(obj: bpy.types.Object, journal: Journal) -> None:
@@ -115,12 +118,11 @@ def _remember(record, name: str):
     return remembered
 
 
-def _show(obj: bpy.types.Object, both_sides: bool, journal: Journal) -> None:
-    """Put the display material in all slots, remembering what was there."""
+def _show(obj: bpy.types.Object, both_sides: bool, displays: Displays, journal: Journal) -> None:
+    """Put display materials in all slots, remembering what was there."""
     record = obj.radiosity
-    material = display.display_material(both_sides, journal)
     if not obj.material_slots:
-        obj.data.materials.append(material)
+        obj.data.materials.append(displays.of(None, both_sides))
         journal.on_failure(obj.data.materials.clear)
         record.slot_added = True
         return
@@ -131,4 +133,6 @@ def _show(obj: bpy.types.Object, both_sides: bool, journal: Journal) -> None:
         unknown = not record.slots[index].link and not record.slot_added
         if unknown or not display.is_display(slot.material):
             record.slots[index].material, record.slots[index].link = slot.material, slot.link
-        journal.set(slot, "material", material)
+        # A slot that the bake itself made had no material.
+        original = None if record.slot_added else record.slots[index].material
+        journal.set(slot, "material", displays.of(original, both_sides))

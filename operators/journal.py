@@ -36,11 +36,15 @@ class Journal:
         """Make this call once the whole block has succeeded."""
         self._later.append((action, arguments))
 
+    def take_back_last(self) -> None:
+        """Undo the newest change alone."""
+        inverse, arguments = self._inverses.pop()
+        inverse(*arguments)
+
     def take_back(self) -> None:
         """Undo every change, newest first."""
         while self._inverses:
-            inverse, arguments = self._inverses.pop()
-            inverse(*arguments)
+            self.take_back_last()
 
     def __enter__(self) -> "Journal":
         return self

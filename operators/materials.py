@@ -21,7 +21,7 @@ _DIFFUSE_LIKE = {
     "BSDF_SHEEN": "reflects at grazing angles",
     "BSDF_TOON": "is no physical shader",
 }
-_NOT_DIFFUSE = {
+NOT_DIFFUSE = {
     "BSDF_GLOSSY",
     "BSDF_METALLIC",
     "BSDF_GLASS",
@@ -172,7 +172,7 @@ class _ShaderReader:
         if node.type in _DIFFUSE_LIKE:
             self.notes.append(f"{name} {_DIFFUSE_LIKE[node.type]}; it counts as diffuse")
             return self._colour(node, "Color", groups), np.zeros(3)
-        if node.type in _NOT_DIFFUSE:
+        if node.type in NOT_DIFFUSE:
             self.notes.append(f"{name} reflects no diffuse light; that part counts as black")
             return np.zeros(3), np.zeros(3)
         self.notes.append(f"{name} is not supported; that part counts as grey")

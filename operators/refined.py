@@ -27,6 +27,7 @@ from .local_mesh import inverse_of
 from .places import is_bent_by_parent, remember_place
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
 from .targets import Target
+from .textured import Displays
 
 _ADDED_TO_NAME = re.compile(r" Radiosity(\.\d+)?$")
 _FLAT_COSINE = 1.0 - 1e-6
@@ -34,12 +35,17 @@ _FLAT_COSINE = 1.0 - 1e-6
 
 
 def store_refined(
-    source: bpy.types.Object, target: Target, baked: BakedMesh, view_layer: bpy.types.ViewLayer, journal: Journal
+    source: bpy.types.Object,
+    target: Target,
+    baked: BakedMesh,
+    displays: Displays,
+    view_layer: bpy.types.ViewLayer,
+    journal: Journal,
 ) -> bpy.types.Object:
     """Make the refined object of `source`, show it and hide `source`; return it."""
     inverse = inverse_of(target.matrix)
     mesh = _refined_mesh(_output_name(source), target, baked, inverse, journal)
-    _give_slots(mesh, source, target, baked, journal)
+    _give_slots(mesh, source, target, baked, displays)
     output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
     if target.layers is not None:
         carry_vertex_groups(output, target.layers, _subdivision(target, baked))
@@ -149,12 +155,19 @@ def _shade(mesh: bpy.types.Mesh, vertices: Floats, triangles: np.ndarray, normal
 
 
 def _give_slots(
-    mesh: bpy.types.Mesh, source: bpy.types.Object, target: Target, baked: BakedMesh, journal: Journal
+    mesh: bpy.types.Mesh, source: bpy.types.Object, target: Target, baked: BakedMesh, displays: Displays
 ) -> None:
-    material = display.display_material(baked.radiosity_back is not None, journal)
     used = int(target.local.slots.max(initial=0)) + 1
-    for _ in range(max(used, len(source.material_slots))):
-        mesh.materials.append(material)
+    originals = original_materials(target, max(used, len(source.material_slots)))
+    for original in originals:
+        mesh.materials.append(displays.of(original, baked.radiosity_back is not None))
+
+
+def original_materials(target: Target, count: int) -> list[bpy.types.Material | None]:
+    """Return the original's materials of the first `count` slots; like the renderers, beyond the last one that one."""
+    by_name = {material.name_full: material for material in bpy.data.materials}
+    names = target.materials or (None,)
+    return [by_name.get(names[min(index, len(names) - 1)]) for index in range(count)]
 
 
 def _object_like(

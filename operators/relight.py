@@ -22,10 +22,11 @@ from .journal import Journal
 from .local_mesh import fingerprint
 from .places import outputs_by_source
 from .record import BAKED_IN_PLACE
-from .refined import values_of_corners
+from .refined import original_materials, values_of_corners
 from .settings import bake_settings
 from .store import store
 from .targets import Target, baked_targets
+from .textured import Displays
 from .transports import RememberedBake, remembered_bake
 
 
@@ -57,7 +58,7 @@ def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_pr
     result = relight(bake.transport, extraction.scene, progress)
     began = time.perf_counter()
     if bake.settings.output == "ORIGINAL":
-        objects, cautions = store(scene, extraction, result, bake.settings.output)
+        objects, cautions = store(scene, extraction, result, bake.settings)
     else:
         objects, cautions = _store_in_refined(bake, extraction, result), []
     report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
@@ -98,19 +99,22 @@ def _store_in_refined(bake: RememberedBake, extraction: Extraction, result: Bake
                 raise NotRelightableError(f'The mesh of "{output.name}" was edited since the bake; bake again')
             found.append((output, target, baked))
     with Journal() as journal:
+        displays = Displays(bake.settings.material, journal)
         for output, target, baked in found:
             rewrite_colours(output.data, values_of_corners(target, baked), journal)
-            _show_sides(output, journal)
+            _show(output, target, displays, journal)
         journal.later(display.remove_unused_display_materials)
+        journal.later(displays.take_names)
     return [output for output, _, _ in found]
 
 
-def _show_sides(output: bpy.types.Object, journal: Journal) -> None:
-    """Have the material show the backs once they have colours."""
-    material = display.display_material(display.RADIOSITY_BACK in output.data.color_attributes, journal)
-    for slot in output.material_slots:
-        if display.is_display(slot.material) and slot.material != material:
-            journal.set(slot, "material", material)
+def _show(output: bpy.types.Object, target: Target, displays: Displays, journal: Journal) -> None:
+    """Have the materials show the backs once they have colours, and the originals' colours as they are now."""
+    both_sides = display.RADIOSITY_BACK in output.data.color_attributes
+    originals = original_materials(target, len(output.material_slots))
+    for slot, original in zip(output.material_slots, originals, strict=True):
+        if display.is_display(slot.material):
+            journal.set(slot, "material", displays.of(original, both_sides))
 
 
 def reason_not_to_relight(context: bpy.types.Context) -> str | None:

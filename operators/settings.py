@@ -42,6 +42,15 @@ OUTPUT_ITEMS = (
         "Shadows are as sharp as the meshes are fine",
     ),
 )
+MATERIAL_ITEMS = (
+    ("PLAIN", "Plain", "One material shows the baked light and colours as they are, one colour for each vertex"),
+    (
+        "TEXTURED",
+        "With Textures",
+        "A copy of each of your materials multiplies the baked light with its colours and textures, which stay sharp "
+        "in renders and in exported glTF files",
+    ),
+)
 
 
 class RadiositySettings(bpy.types.PropertyGroup):
@@ -132,6 +141,13 @@ class RadiositySettings(bpy.types.PropertyGroup):
         default=DEFAULTS.keep_transport,
         options=set(),
     )
+    material: bpy.props.EnumProperty(
+        name="Material",
+        description="How the baked objects look; Restore brings your own materials back",
+        items=MATERIAL_ITEMS,
+        default=DEFAULTS.material,
+        options=set(),
+    )
     report: bpy.props.StringProperty(
         name="Report",
         description="What came of the last bake, as JSON",
@@ -172,6 +188,7 @@ def bake_settings(properties: RadiositySettings) -> BakeSettings:
         threads=properties.threads,
         memory_limit=properties.memory_limit,
         keep_transport=properties.keep_transport,
+        material=properties.material,
     )
 
 

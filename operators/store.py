@@ -6,6 +6,7 @@ import bpy
 
 from ..core.errors import BakeError
 from ..core.result import BakeResult
+from ..core.settings import BakeSettings
 from . import display
 from .extraction import Extraction
 from .in_place import check_names, store_in_place
@@ -16,6 +17,7 @@ from .record import BAKED_IN_PLACE
 from .refined import store_refined
 from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
+from .textured import Displays
 
 
 class ChangedMeanwhileError(BakeError):
@@ -23,14 +25,14 @@ class ChangedMeanwhileError(BakeError):
 
 
 def store(
-    scene: bpy.types.Scene, extraction: Extraction, result: BakeResult, output: str
+    scene: bpy.types.Scene, extraction: Extraction, result: BakeResult, settings: BakeSettings
 ) -> tuple[list[bpy.types.Object], list[str]]:
     """Write `result` into the file in place of any earlier bake of the same objects.
 
     Parameters
     ----------
-    output : str
-        `'REFINED'` or `'ORIGINAL'`.
+    settings : BakeSettings
+        Of which `output` and `material` are heeded.
 
     Returns
     -------
@@ -45,6 +47,7 @@ def store(
     AttributeNameError
         See `check_storable`.
     """
+    output = settings.output
     view_layer = scene.view_layers.get(extraction.view_layer)
     if view_layer is None:
         raise ChangedMeanwhileError(
@@ -56,16 +59,18 @@ def store(
     warnings = [sentence for target, obj in found for sentence in _cautions(target, obj, output)]
     baked_objects = []
     with Journal() as journal:
+        displays = Displays(settings.material, journal)
         for (target, obj), (_, baked) in zip(found, pairs, strict=True):
             # A second bake in place only needs new values; what the first one remembers stays true.
             if not (output == "ORIGINAL" and obj.radiosity.kind == BAKED_IN_PLACE):
                 restore_object(obj, view_layer, journal)
             if output == "REFINED":
-                baked_objects.append(store_refined(obj, target, baked, view_layer, journal))
+                baked_objects.append(store_refined(obj, target, baked, displays, view_layer, journal))
             else:
-                store_in_place(obj, target, baked, journal)
+                store_in_place(obj, target, baked, displays, journal)
                 baked_objects.append(obj)
         journal.later(display.remove_unused_display_materials)
+        journal.later(displays.take_names)
     return baked_objects, warnings
 
 

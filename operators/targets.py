@@ -46,6 +46,8 @@ class Target:
         Of the object's own data, to notice that it was edited during the bake.
     same_corners : bool
         Whether the evaluated mesh has the very face corners of the object's own mesh.
+    materials : tuple of str or None
+        Full names of the materials that the slots of `local` stand for, None for a slot without one.
     layers : Layers or None
         Of the evaluated meshes, joined like them; None for colours in place, which need none.
     """
@@ -59,6 +61,7 @@ class Target:
     local: LocalMesh
     fingerprint: bytes
     same_corners: bool
+    materials: tuple[str | None, ...] = ()
     layers: Layers | None = None
 
 

@@ -7,5 +7,10 @@ import bpy
 from . import panel
 
 register, unregister = bpy.utils.register_classes_factory(
-    (panel.VIEW3D_PT_radiosity, panel.VIEW3D_PT_radiosity_sampling, panel.VIEW3D_PT_radiosity_result)
+    (
+        panel.VIEW3D_PT_radiosity,
+        panel.VIEW3D_PT_radiosity_output,
+        panel.VIEW3D_PT_radiosity_sampling,
+        panel.VIEW3D_PT_radiosity_result,
+    )
 )

@@ -73,6 +73,22 @@ class VIEW3D_PT_radiosity_sampling(_InSidebar, bpy.types.Panel):
         layout.prop(settings, "keep_transport")
 
 
+class VIEW3D_PT_radiosity_output(_InSidebar, bpy.types.Panel):
+    """What is written, and how it is shown."""
+
+    bl_label = "Attributes and Material"
+    bl_parent_id = "VIEW3D_PT_radiosity"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads it from the class
+
+    def draw(self, context):
+        """Draw the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.active = RADIOSITY_OT_bake.job is None
+        layout.prop(context.scene.radiosity, "material")
+
+
 class VIEW3D_PT_radiosity_result(_InSidebar, bpy.types.Panel):
     """What came of the last bake."""
 

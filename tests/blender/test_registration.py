@@ -51,6 +51,7 @@ def test_choices_are_those_of_core():
         (settings_module.METHOD_ITEMS, core.METHODS),
         (settings_module.QUALITY_ITEMS, core.QUALITIES),
         (settings_module.OUTPUT_ITEMS, core.OUTPUTS),
+        (settings_module.MATERIAL_ITEMS, core.MATERIALS),
     ):
         assert tuple(item[0] for item in items) == names
 

@@ -42,6 +42,7 @@ def test_settings_cannot_be_changed_once_made():
         ({"method": "RANDOM"}, ("Method", "ADAPTIVE, UNIFORM")),
         ({"quality": "good"}, ("Quality", "DRAFT, GOOD, HIGH")),
         ({"output": ""}, ("Output", "REFINED")),
+        ({"material": "GLASS"}, ("Material", "PLAIN, TEXTURED")),
         ({"seed": -1}, ("Seed", "choose 0 to")),
         ({"threads": -2}, ("Threads", "0 for all cores")),
         ({"memory_limit": 1}, ("Memory limit", "64 MiB or more")),
