@@ -4,7 +4,7 @@
 
 import bpy
 
-from . import bake, command, record, relight, restore, settings, transports
+from . import bake, command, object_settings, record, relight, restore, settings, transports
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
@@ -12,6 +12,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         record.RememberedSlot,
         record.RememberedAttribute,
         record.ObjectRecord,
+        object_settings.ObjectSettings,
         bake.RADIOSITY_OT_bake,
         bake.RADIOSITY_OT_cancel,
         relight.RADIOSITY_OT_relight,
@@ -25,6 +26,9 @@ def register() -> None:
     _register_classes()
     bpy.types.Scene.radiosity = bpy.props.PointerProperty(type=settings.RadiositySettings)
     bpy.types.Object.radiosity = bpy.props.PointerProperty(type=record.ObjectRecord, override={"LIBRARY_OVERRIDABLE"})
+    bpy.types.Object.radiosity_settings = bpy.props.PointerProperty(
+        type=object_settings.ObjectSettings, override={"LIBRARY_OVERRIDABLE"}
+    )
     transports.register()
     command.register()
 
@@ -34,6 +38,7 @@ def unregister() -> None:
     bake.stop_running_job()
     command.unregister()
     transports.unregister()
+    del bpy.types.Object.radiosity_settings
     del bpy.types.Object.radiosity
     del bpy.types.Scene.radiosity
     _unregister_classes()

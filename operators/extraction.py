@@ -16,10 +16,11 @@ from .lamps import lamp_of
 from .layers import Layers, joined_layers, layers_of
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
 from .materials import Surface, material_surface, world_radiance
+from .object_settings import Role, role_of
 from .participants import Participants, shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
 from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, source_of
-from .targets import Part, Target, joined_mesh, shows_surfaces
+from .targets import Part, Target, joined_glow, joined_mesh, shows_surfaces
 
 _UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
 
@@ -107,6 +108,7 @@ _WITHOUT_A_MESH = _Reason(
     "have no meshes of their own; Refined Mesh bakes them",
 )
 _WITHOUT_FACES = _Reason("has no faces", "have no faces")
+_NOT_RECEIVING = _Reason("does not receive light by its own settings", "do not receive light by their own settings")
 _NOT_RENDERED = _Reason("is not shown in renders", "are not shown in renders")
 
 
@@ -117,6 +119,8 @@ def _wanted(
     for obj in dict.fromkeys(_that_makes_the_faces(source_of(obj)) for obj in objects):
         if not shows_surfaces(obj):
             skipped.setdefault(_NOT_A_MESH, []).append(obj.name)
+        elif not obj.radiosity_settings.receives:
+            skipped.setdefault(_NOT_RECEIVING, []).append(obj.name)
         elif obj.library is not None:
             skipped.setdefault(_LINKED, []).append(obj.name)
         elif output == "ORIGINAL" and obj.type != "MESH":
@@ -184,6 +188,35 @@ def _orphaned(objects: Iterable[bpy.types.Object], outputs: Outputs) -> list[str
     ]
 
 
+@dataclass(frozen=True, eq=False)
+class _Entry:
+    """A mesh that the dependency graph shows.
+
+    Attributes
+    ----------
+    order : tuple
+        By which entries are sorted.
+    original : Object
+        That the mesh is of.
+    owner : Object or None
+        That is to carry its colours.
+    role : Role
+    local : LocalMesh
+    materials : tuple of Material or None
+    matrix : (4, 4) float
+    layers : Layers or None
+    """
+
+    order: tuple[Any, ...]
+    original: bpy.types.Object
+    owner: bpy.types.Object | None
+    role: Role
+    local: LocalMesh
+    materials: tuple[Any, ...]
+    matrix: Floats
+    layers: Layers | None
+
+
 class _Reader:
     """Goes once over everything that a dependency graph shows."""
 
@@ -213,13 +246,14 @@ class _Reader:
         self._matrices: dict[bpy.types.Object, Floats] = {}
         self._unbaked_instances: dict[str, None] = {}
         self._instanced_lamps: dict[str, None] = {}
+        self._unreceiving: dict[tuple[str, str], None] = {}
         self.shown: set[bpy.types.Object] = set()
 
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
-        entries = sorted(self._entries(), key=lambda entry: entry[0])
-        for _, original, owner, local, materials, matrix, layers in entries:
-            self._add(original, owner, local, materials, matrix, layers)
+        entries = sorted(self._entries(), key=lambda entry: entry.order)
+        for entry in entries:
+            self._add(entry)
         self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
 
     def warnings(self) -> list[str]:
@@ -240,9 +274,13 @@ class _Reader:
             f'The lamps that "{name}" instances are hidden together with it; their light is in the colours'
             for name in self._instanced_lamps
         ]
+        sentences += [
+            f'The instances of "{name}" do not receive light and are hidden together with "{owner}"'
+            for name, owner in self._unreceiving
+        ]
         return sentences
 
-    def _entries(self) -> Iterator[tuple[Any, ...]]:
+    def _entries(self) -> Iterator[_Entry]:
         lamps: list[tuple[Any, Lamp | None]] = []
         for instance in self._depsgraph.object_instances:
             if not self._participants.include(instance):
@@ -258,9 +296,10 @@ class _Reader:
                 tuple(instance.persistent_id) if parent else (),
             )
             matrix = np.array(instance.matrix_world, dtype=np.float64)
-            owner = self._owner(instance, matrix)
+            role = role_of([original] if parent in (None, original) else [original, parent])
+            owner = self._owner(instance, matrix, role)
             if obj.type == "LIGHT":
-                lamps.append((order, self._lamp(obj, matrix)))
+                lamps.append((order, self._lamp(obj, matrix) if role.seen else None))
                 if owner is not None:
                     self._instanced_lamps[owner.name] = None
             if obj.type != "MESH":
@@ -268,10 +307,12 @@ class _Reader:
             local = self._local_mesh(obj)
             if local is not None:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
-                yield order, original, owner, local, _slot_materials(obj, local), matrix, layers
+                yield _Entry(order, original, owner, role, local, _slot_materials(obj, local), matrix, layers)
         self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
 
-    def _owner(self, instance: bpy.types.DepsgraphObjectInstance, matrix: Floats) -> bpy.types.Object | None:
+    def _owner(
+        self, instance: bpy.types.DepsgraphObjectInstance, matrix: Floats, role: Role
+    ) -> bpy.types.Object | None:
         """Return the object that is to carry the colours of an instance, or of an object itself; None for nobody."""
         owner = (instance.parent if instance.is_instance else instance.object).original
         if owner not in self._wanted:
@@ -280,6 +321,10 @@ class _Reader:
         self._matrices[owner] = np.array(instance.parent.matrix_world) if instance.is_instance else matrix
         if self._output == "ORIGINAL" and instance.is_instance:
             self._unbaked_instances[owner.name] = None
+            return None
+        if not role.receives:
+            if instance.is_instance and owner.radiosity_settings.receives:
+                self._unreceiving[(instance.object.original.name, owner.name)] = None
             return None
         return owner
 
@@ -305,17 +350,33 @@ class _Reader:
             obj.to_mesh_clear()
         return self._layers_of_mesh[key]
 
-    def _add(
-        self, original, owner, local: LocalMesh, materials: tuple[Any, ...], matrix: Floats, layers: Layers | None
-    ) -> None:
+    def _add(self, entry: _Entry) -> None:
+        local, role, matrix = entry.local, entry.role, entry.matrix
         if np.linalg.det(matrix[:3, :3]) < 0.0:
             local = turned_over(local)
-        reflectance, emission = self._optics(original.name, local, materials)
-        if owner is not None:
-            self._parts.setdefault(owner, []).append(Part(len(self.meshes), local, materials, matrix, layers))
+        reflectance, emission = self._optics(entry.original.name, local, entry.materials)
+        if role.reflectance is not None:
+            reflectance = np.broadcast_to(role.reflectance, reflectance.shape)
+        glow = None
+        if not role.lights and emission.any():
+            emission, glow = np.zeros_like(emission), emission
+        if entry.owner is not None:
+            part = Part(len(self.meshes), local, entry.materials, matrix, entry.layers, glow)
+            self._parts.setdefault(entry.owner, []).append(part)
         vertices, normals = placed(local, matrix)
-        baked = owner is not None
-        self.meshes.append(SurfaceMesh(original.name, vertices, local.triangles, normals, reflectance, emission, baked))
+        self.meshes.append(
+            SurfaceMesh(
+                name=entry.original.name,
+                vertices=vertices,
+                triangles=local.triangles,
+                corner_normals=normals,
+                reflectance=reflectance,
+                emission=emission,
+                baked=entry.owner is not None,
+                seen=role.seen,
+                shadow=role.shadow,
+            )
+        )
 
     def _target(self, owner: bpy.types.Object, parts: list[Part]) -> Target:
         matrix = self._matrices[owner]
@@ -335,6 +396,7 @@ class _Reader:
             same_corners=owner.type == "MESH" and _has_corners_of(owner.data, local),
             materials=tuple(material and material.name_full for material in materials),
             layers=joined_layers([part.layers for part in parts], [part.local for part in parts]),
+            glow=joined_glow(parts),
         )
 
     def _optics(self, name: str, local: LocalMesh, materials: tuple[Any, ...]) -> tuple[Floats, Floats]:

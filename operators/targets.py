@@ -8,7 +8,7 @@ selected.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import bpy
@@ -50,6 +50,8 @@ class Target:
         Full names of the materials that the slots of `local` stand for, None for a slot without one.
     layers : Layers or None
         Of the evaluated meshes, joined like them; None for colours in place, which need none.
+    glow : (t, 3) float or None
+        Emitted radiance of each triangle that lights nothing and is to be seen all the same.
     """
 
     uid: int
@@ -63,6 +65,7 @@ class Target:
     same_corners: bool
     materials: tuple[str | None, ...] = ()
     layers: Layers | None = None
+    glow: Floats | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +84,8 @@ class Part:
         From its space to the world's.
     layers : Layers or None
         Its data layers, where they are wanted.
+    glow : (t, 3) float or None
+        As in `Target`.
     """
 
     mesh: int
@@ -88,6 +93,7 @@ class Part:
     materials: tuple[Any, ...]
     matrix: Floats
     layers: Layers | None = None
+    glow: Floats | None = None
 
 
 def shows_surfaces(obj: bpy.types.Object) -> bool:
@@ -155,10 +161,29 @@ def _slots_among(part: Part, materials: list[Any]) -> Ints:
     return slots[own]
 
 
+def joined_glow(parts: Sequence[Part]) -> Floats | None:
+    """Return the glow of each triangle of all parts (t, 3), or None where nothing glows."""
+    if all(part.glow is None for part in parts):
+        return None
+    return np.concatenate(
+        [np.zeros((len(part.local.triangles), 3)) if part.glow is None else part.glow for part in parts]
+    )
+
+
 def baked_targets(scene: Scene, targets: Iterable[Target], result: BakeResult) -> list[tuple[Target, BakedMesh]]:
     """Return each target with its baked values, those of several meshes joined as `Target.local` joins them."""
     baked = {mesh.mesh: mesh for mesh in result.meshes}
-    return [(target, _joined_values(scene, target, [baked[mesh] for mesh in target.meshes])) for target in targets]
+    joined = [(target, _joined_values(scene, target, [baked[mesh] for mesh in target.meshes])) for target in targets]
+    return [(target, _glowing(values, target.glow)) for target, values in joined]
+
+
+def _glowing(baked: BakedMesh, glow: Floats | None) -> BakedMesh:
+    """Return the values with the glow of triangles (t, 3) added on both sides, as emission shows on both."""
+    if glow is None:
+        return baked
+    added = glow[baked.parent_triangle][:, None]
+    back = None if baked.radiosity_back is None else baked.radiosity_back + added
+    return replace(baked, radiosity=baked.radiosity + added, radiosity_back=back)
 
 
 def _joined_values(scene: Scene, target: Target, baked: list[BakedMesh]) -> BakedMesh:

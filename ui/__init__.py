@@ -4,13 +4,15 @@
 
 import bpy
 
-from . import panel
+from . import object_panel, panel
 
 register, unregister = bpy.utils.register_classes_factory(
     (
         panel.VIEW3D_PT_radiosity,
         panel.VIEW3D_PT_radiosity_output,
         panel.VIEW3D_PT_radiosity_sampling,
+        object_panel.VIEW3D_PT_radiosity_object,
         panel.VIEW3D_PT_radiosity_result,
+        object_panel.OBJECT_PT_radiosity,
     )
 )
