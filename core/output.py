@@ -89,6 +89,15 @@ def _original(
     )
 
 
+def _without_collapsed(
+    faces: Faces, chosen: Ints, front: Floats, back: Floats | None, turned: NDArray[np.bool_]
+) -> tuple[Ints, Floats, Floats | None, NDArray[np.bool_]]:
+    """Leave out faces that have a corner twice; Blender crashes when it computes normals of such."""
+    a, b, c = faces.corners[chosen].T
+    sound = (a != b) & (b != c) & (c != a)
+    return chosen[sound], front[sound], None if back is None else back[sound], turned[sound]
+
+
 def _refined(
     surfaces: Surfaces,
     faces: Faces,
@@ -99,6 +108,7 @@ def _refined(
     turned: NDArray[np.bool_],
 ) -> BakedMesh:
     """The conforming subdivision of one mesh, shells that are lit from behind turned over."""
+    chosen, front, back, turned = _without_collapsed(faces, chosen, front, back, turned)
     first, last = surfaces.first_point_of_mesh[number : number + 2]
     made = np.flatnonzero(faces.mesh_of_point == number)
     made = np.intersect1d(made[made >= surfaces.first_point_of_mesh[-1]], faces.corners[chosen])

@@ -276,3 +276,17 @@ def test_a_floor_under_a_lamp_is_brightest_in_its_middle(output):
     if output == "REFINED":
         assert colours[:, 0].max() > 4.0 * colours[:, 0].min()
     assert report()["rays"] > 0
+
+
+def test_a_bevel_that_meets_itself_leaves_no_face_with_a_corner_twice():
+    # A bevel as wide as half the height puts vertices on one another; Blender crashed in the normals of such faces.
+    box = add_cube("Box", select=True)
+    box.scale = (0.75, 0.8, 0.05)
+    bevel = box.modifiers.new("Bevel", "BEVEL")
+    bevel.width, bevel.segments = 0.05, 3
+    bpy.ops.object.transform_apply(scale=True)
+    add_lamp_mesh()
+    bpy.context.scene.radiosity.quality = "DRAFT"
+    bake_selected("REFINED")
+    mesh = bpy.data.objects["Box Radiosity"].data
+    assert all(len(set(face.vertices)) == 3 for face in mesh.polygons)
