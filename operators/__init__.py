@@ -4,7 +4,7 @@
 
 import bpy
 
-from . import bake, command, object_settings, record, relight, restore, settings, transports
+from . import animation, bake, command, object_settings, record, relight, restore, settings, transports
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
@@ -15,6 +15,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         object_settings.ObjectSettings,
         bake.RADIOSITY_OT_bake,
         bake.RADIOSITY_OT_cancel,
+        animation.RADIOSITY_OT_bake_frames,
         relight.RADIOSITY_OT_relight,
         restore.RADIOSITY_OT_restore,
     )

@@ -12,17 +12,19 @@ import bpy
 from ..core.errors import BakeError, Cancelled
 from ..core.progress import Progress, ProgressCallback, no_progress
 from ..core.result import BakeResult
+from ..core.scene import Scene
 from ..core.settings import BakeSettings
 from .display import show_in_viewport
 from .extraction import Extraction, extract
 from .job import BakeJob, Failed, Finished
 from .record import source_of
+from .sets import without_sets
 from .settings import bake_settings
 from .store import check_storable, scene_of, store
 from .targets import shows_surfaces
 from .transports import remember
 
-_POLL_SECONDS = 0.1
+POLL_SECONDS = 0.1
 _PATIENCE_SECONDS = 0.3
 """How long Esc waits for the thread. It stops at its next message anyway, and what it finds then is thrown away."""
 
@@ -46,15 +48,14 @@ def bake_objects(
     extraction = extract(context, objects, settings.output)
     check_storable(extraction, settings.output)
     read = time.perf_counter() - began
-    result = _core_bake()(extraction.scene, settings, progress)
-    return finish(extraction, result, settings, read)
+    return finish(extraction, trace(extraction.scene, settings, progress), settings, read)
 
 
 def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, read: float) -> dict[str, Any]:
     """Store `result`, then write and return the report; `read` is the seconds that the extraction took."""
     began = time.perf_counter()
     scene = scene_of(extraction)
-    objects, cautions = store(scene, extraction, result, settings)
+    objects, cautions = store(scene, extraction, result, settings, without_sets)
     remember(scene, extraction, settings, result, objects)
     report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
     scene.radiosity.report = json.dumps(report)
@@ -91,6 +92,11 @@ def profile(seconds: dict[str, float], told: dict[str, Any]) -> dict[str, float]
     blender = (seconds["extract"] + seconds["store"]) / total
     shares = {"ray_library": rays, "arrays": max(0.0, 1.0 - rays - blender), "blender": blender}
     return {name: round(share, 4) for name, share in shares.items()}
+
+
+def trace(scene: Scene, settings: BakeSettings, progress: ProgressCallback) -> BakeResult:
+    """Return the bake of a scene."""
+    return _core_bake()(scene, settings, progress)
 
 
 def _core_bake():
@@ -183,7 +189,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         self._outcome = None
         job = RADIOSITY_OT_bake.job = BakeJob(_core_bake(), self._extraction.scene, self._settings)
         window_manager = context.window_manager
-        self._timer = window_manager.event_timer_add(_POLL_SECONDS, window=context.window)
+        self._timer = window_manager.event_timer_add(POLL_SECONDS, window=context.window)
         window_manager.progress_begin(0, 100)
         window_manager.modal_handler_add(self)
         job.start()
@@ -253,7 +259,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         detail = f" ({progress.detail})" if progress.detail else ""
         context.workspace.status_text_set(f"Radiosity  {progress.share:.0%}  {progress.stage}{detail}  |  Esc: Cancel")
         context.window_manager.progress_update(100.0 * progress.share)
-        _redraw_panels(context)
+        redraw_panels(context)
 
     def _leave(self, context) -> None:
         RADIOSITY_OT_bake.job = None
@@ -261,7 +267,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         context.window_manager.progress_end()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        _redraw_panels(context)
+        redraw_panels(context)
 
 
 class RADIOSITY_OT_cancel(bpy.types.Operator):
@@ -283,7 +289,7 @@ class RADIOSITY_OT_cancel(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _redraw_panels(context: bpy.types.Context) -> None:
+def redraw_panels(context: bpy.types.Context) -> None:
     """Redraw the sidebars of the 3D viewports; drawing a heavy scene as well would delay Esc."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:

@@ -14,6 +14,7 @@ import bpy
 from ..core.errors import BakeError, Cancelled
 from ..core.progress import Progress
 from ..core.settings import MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
+from .animation import FRAME_OUTPUTS, bake_frames, file_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_writable, replaced
 from .participants import rendered_objects
@@ -104,6 +105,15 @@ def _parser() -> argparse.ArgumentParser:
     files.add_argument("--overwrite", action="store_true", help="allow --output to be the file that was read")
     what = parser.add_argument_group("what is baked")
     what.add_argument("--object", metavar="NAME", action="append", help="bake this mesh only; may be given repeatedly")
+    what.add_argument(
+        "--frames", metavar="A:B", help="bake every frame from A to B; a file each, or all in one (--frames-to)"
+    )
+    what.add_argument(
+        "--frames-to",
+        choices=FRAME_OUTPUTS,
+        default="ATTRIBUTES",
+        help="attributes Radiosity.0001, ... in one file (the default), or files named like --output with _0001, ...",
+    )
     what.add_argument("--bake-to", choices=OUTPUTS, help="new refined meshes, or the meshes as they are")
     what.add_argument("--material", choices=MATERIALS, help="the light as it is, or on your materials' textures")
     how = parser.add_argument_group("how it is baked")
@@ -137,16 +147,51 @@ def _run(options: argparse.Namespace) -> None:
     settings = _settings(options, context.scene)
     objects = _objects(options.object, context)
     output, report_path = _paths(options)
+    if options.frames is not None:
+        _run_frames(options, objects, settings, output, report_path)
+        return
     report = bake_objects(context, objects, settings, _ProgressLines())
     # Who opens the output finds in its panel what it was baked with.
     keep_settings(context.scene.radiosity, settings)
-    # Both files are complete before either takes its name.
+    _write(report, output, report_path)
+    _summarise(report, output)
+
+
+def _run_frames(
+    options: argparse.Namespace,
+    objects: list[bpy.types.Object],
+    settings: BakeSettings,
+    output: Path,
+    report_path: Path | None,
+) -> None:
+    context = bpy.context
+    to_files = options.frames_to == "FILES"
+    frames = _frames(options.frames)
+    # Who opens one of the files finds in its panel what it was baked with.
+    keep_settings(context.scene.radiosity, settings)
+    report = bake_frames(context, objects, settings, frames, output if to_files else None, _ProgressLines())
+    _write(report, None if to_files else output, report_path)
+    for warning in report["warnings"]:
+        print(f"Warning: {warning}")
+    print(f"{summary_of(report)}. Wrote {file_of(output, frames[0]) if to_files else output}", flush=True)
+
+
+def _frames(text: str) -> range:
+    first, colon, last = text.partition(":")
+    try:
+        return range(int(first), int(last if colon else first) + 1)
+    except ValueError:
+        raise CommandError(f"--frames {text} is not a range of frames such as 1:24") from None
+
+
+def _write(report: dict, output: Path | None, report_path: Path | None) -> None:
+    """Write the files; both are complete before either takes its name."""
     with ExitStack() as files:
-        _save(files.enter_context(replaced(output)), output)
+        if output is not None:
+            _save(files.enter_context(replaced(output)), output)
         if report_path is not None:
             text = json.dumps(report, indent=2, ensure_ascii=False) + "\n"
             files.enter_context(replaced(report_path)).write_text(text, encoding="utf-8")
-    _summarise(report, output)
 
 
 def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettings:

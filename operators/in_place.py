@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Baked values on the meshes that the objects have."""
 
+from collections.abc import Mapping
+
 import bpy
 import numpy as np
 
@@ -54,8 +56,8 @@ def store_in_place(
             obj.data
         )
     remember_active_attributes(obj.data, journal)
-    values = _values_of_corners(obj.data, target, baked)
-    _make_room(obj, values, journal)
+    values = values_in_place(obj.data, target, baked)
+    make_room(obj, values, journal)
     write_colours(obj.data, values)
     _show(obj, baked.radiosity_back is not None, displays, journal)
 
@@ -75,7 +77,8 @@ def _own_mesh(obj: bpy.types.Object, journal: Journal) -> None:
     journal.set(obj, "data", own)
 
 
-def _values_of_corners(mesh: bpy.types.Mesh, target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
+def values_in_place(mesh: bpy.types.Mesh, target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
+    """Return the values of a baked mesh for the corners of the object's own mesh, by the name of the attribute."""
     values = baked_values(baked)
     if target.same_corners:
         return {name: _gather_corners(part, target, len(mesh.loops)) for name, part in values.items()}
@@ -94,11 +97,11 @@ def _gather_corners(values: Floats | None, target: Target, count: int) -> Floats
     return np.stack(sums, axis=1) / times[:, None]
 
 
-def _make_room(obj: bpy.types.Object, values: dict[str, Floats | None], journal: Journal) -> None:
+def make_room(obj: bpy.types.Object, values: Mapping[str, Floats | None], journal: Journal) -> None:
     """Clear the names of our attributes: ours of an earlier bake go, a user's are renamed aside and remembered."""
     mesh, record = obj.data, obj.radiosity
     # Backwards, so that taking it back makes them in their order.
-    for name, colours in reversed(values.items()):
+    for name, colours in reversed(list(values.items())):
         ours = name in record.attributes
         if ours and name in mesh.color_attributes:
             remove_attribute(mesh, name, journal)

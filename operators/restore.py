@@ -210,7 +210,8 @@ def restore_attributes(obj: bpy.types.Object, journal: Journal) -> None:
     before = (record.active_attribute, record.active_color, record.default_color)
     remember_active_attributes(mesh, journal)
     # Backwards, so that taking it back makes them in their order.
-    for name in (name for name in reversed(display.ATTRIBUTES) if name in record.attributes):
+    sets = [attribute.name for attribute in record.attributes if attribute.name not in display.ATTRIBUTES]
+    for name in (name for name in reversed((*display.ATTRIBUTES, *sets)) if name in record.attributes):
         attribute = record.attributes[name]
         if attribute.name in mesh.color_attributes:
             remove_attribute(mesh, attribute.name, journal)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The end of a bake: every baked object gets its values, all of them or none."""
 
+from collections.abc import Callable
+
 import bpy
 
 from ..core.errors import BakeError
@@ -19,13 +21,19 @@ from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
 from .textured import Displays
 
+Beside = Callable[[bpy.types.Object, int, Journal], None]
+
 
 class ChangedMeanwhileError(BakeError):
     """An object is no longer what it was when the bake began."""
 
 
 def store(
-    scene: bpy.types.Scene, extraction: Extraction, result: BakeResult, settings: BakeSettings
+    scene: bpy.types.Scene,
+    extraction: Extraction,
+    result: BakeResult,
+    settings: BakeSettings,
+    beside: Beside | None = None,
 ) -> tuple[list[bpy.types.Object], list[str]]:
     """Write `result` into the file in place of any earlier bake of the same objects.
 
@@ -33,6 +41,8 @@ def store(
     ----------
     settings : BakeSettings
         Of which `output` and `material` are heeded.
+    beside : callable, optional
+        Writes more on each object that carries the colours, given with the `session_uid` of its original.
 
     Returns
     -------
@@ -69,6 +79,8 @@ def store(
             else:
                 store_in_place(obj, target, baked, displays, journal)
                 baked_objects.append(obj)
+            if beside is not None:
+                beside(baked_objects[-1], target.uid, journal)
         journal.later(display.remove_unused_display_materials)
         journal.later(displays.take_names)
     return baked_objects, warnings

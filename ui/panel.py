@@ -49,6 +49,7 @@ class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
         reason = reason_not_to_bake(context)
         if reason is not None:
             _draw_sentence(layout, context, reason, "INFO")
+        layout.operator_menu_enum("radiosity.bake_frames", "frame_output", icon="RENDER_ANIMATION")
         layout.operator("radiosity.relight", icon="SHADING_RENDERED")
         layout.operator("radiosity.restore", icon="LOOP_BACK")
 

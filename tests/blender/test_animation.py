@@ -1,0 +1,226 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A range of frames: what is traced, what is only lit again, where the light is kept, and that nothing else changes."""
+
+import json
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.operators.animation import bake_frames
+from radiosity_bake.operators.command import main
+from radiosity_bake.operators.restore import restore
+
+from tests.blender.making import (
+    add_cube,
+    add_object,
+    add_plane,
+    bake_selected,
+    colours_of,
+    diffuse_material,
+    report,
+    select_also,
+)
+from tests.blender.state import differences, file_state
+
+ROUNDING = 1e-5
+"""Of the largest value, as in the tests of relighting."""
+
+
+@pytest.fixture
+def room():
+    """A floor below a box and a lamp whose colour goes from red to blue over the frames 1 to 3, at frame 2."""
+    floor = add_plane("Floor", materials=[diffuse_material("Boards", (0.7, 0.6, 0.5, 1.0))])
+    floor.scale = (3.0, 3.0, 1.0)
+    box = add_cube("Box", materials=[diffuse_material("Paint", (0.2, 0.6, 0.7, 1.0))])
+    box.location, box.scale = (0.5, 0.3, 0.6), (0.4, 0.5, 0.5)
+    light = bpy.data.lights.new("Lamp", "POINT")
+    light.energy = 100.0
+    add_object("Lamp", light).location = (0.3, -0.4, 2.5)
+    for frame, colour in ((1, (1.0, 0.2, 0.2)), (3, (0.2, 0.2, 1.0))):
+        light.color = colour
+        light.keyframe_insert("color", frame=frame)
+    select_also(box, floor)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 3
+    scene.frame_set(2)
+    scene.radiosity.quality, scene.radiosity.minimum_size, scene.radiosity.output = "DRAFT", 0.8, "ORIGINAL"
+    return floor, box
+
+
+def move_the_box(box):
+    """Have the box stand elsewhere at frame 3 than at frames 1 and 2."""
+    for frame, x in ((1, 0.5), (2, 0.5), (3, -0.8)):
+        box.location.x = x
+        box.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(2)
+
+
+def bake_range(frame_output="ATTRIBUTES"):
+    assert bpy.ops.radiosity.bake_frames(frame_output=frame_output) == {"FINISHED"}
+    return [frame["traced"] for frame in report()["frames"]]
+
+
+def fresh(floor, frame):
+    """The floor's radiosity of an ordinary bake at a frame."""
+    bpy.context.scene.frame_set(frame)
+    bake_selected()
+    return colours_of(floor.data)
+
+
+def test_a_lamp_that_changes_colour_is_traced_once_and_lit_like_fresh_bakes(room):
+    floor, _ = room
+    assert bake_range() == [True, False, False]
+    sets = {frame: colours_of(floor.data, f"Radiosity.{frame:04d}") for frame in (1, 2, 3)}
+    assert not np.allclose(sets[1], sets[3])
+    for frame, values in sets.items():
+        expected = fresh(floor, frame)
+        assert np.abs(values - expected).max() <= ROUNDING * expected.max()
+
+
+def test_an_object_that_moves_is_traced_again(room):
+    floor, box = room
+    move_the_box(box)
+    assert bake_range() == [True, False, True]
+    values = colours_of(floor.data, "Radiosity.0003")
+    np.testing.assert_array_equal(values, fresh(floor, 3))
+
+
+def test_the_frame_that_the_scene_is_at_is_shown(room):
+    floor, _ = room
+    bpy.context.scene.frame_set(2, subframe=0.25)
+    bake_range()
+    assert (bpy.context.scene.frame_current, bpy.context.scene.frame_subframe) == (2, 0.25)
+    assert floor.data.color_attributes.active_color_name == "Radiosity"
+    for name in ("Radiosity", "Irradiance"):
+        np.testing.assert_array_equal(colours_of(floor.data, name), colours_of(floor.data, f"{name}.0002"))
+
+
+@pytest.mark.parametrize("output", ["ORIGINAL", "REFINED"])
+def test_restore_leaves_everything_as_before(room, output):
+    bpy.context.scene.radiosity.output = output
+    before = file_state()["objects"], file_state()["meshes"]
+    bake_range()
+    restore(room, bpy.context.view_layer)
+    assert not differences(before[0], file_state()["objects"])
+    assert not differences(before[1], file_state()["meshes"])
+
+
+def test_refined_meshes_carry_all_frames_while_nothing_moves(room):
+    bpy.context.scene.radiosity.output = "REFINED"
+    assert bake_range() == [True, False, False]
+    mesh = bpy.data.objects["Floor Radiosity"].data
+    np.testing.assert_array_equal(colours_of(mesh), colours_of(mesh, "Radiosity.0002"))
+    assert not np.allclose(colours_of(mesh, "Radiosity.0001"), colours_of(mesh, "Radiosity.0003"))
+
+
+def test_refined_meshes_that_differ_from_frame_to_frame_are_refused_and_nothing_changes(room):
+    move_the_box(room[1])
+    bpy.context.scene.radiosity.output = "REFINED"
+    before = file_state()
+    with pytest.raises(RuntimeError, match="Frame 3: something moved since the frame before"):
+        bake_range()
+    assert not differences(before, file_state())
+    assert bpy.context.scene.frame_current == 2
+
+
+def test_an_error_names_its_frame_and_changes_nothing(room):
+    light = bpy.data.lights["Lamp"]
+    for frame, energy in ((1, 100.0), (2, 100.0), (3, 0.0)):
+        light.energy = energy
+        light.keyframe_insert("energy", frame=frame)
+    bpy.context.scene.frame_set(2)
+    before = file_state()
+    with pytest.raises(RuntimeError, match="Frame 3: "):
+        bake_range()
+    assert not differences(before, file_state())
+
+
+def test_a_shorter_range_and_an_ordinary_bake_leave_no_sets_of_an_earlier_one(room):
+    floor, _ = room
+    bake_range()
+    bpy.context.scene.frame_end = 2
+    bake_range()
+    names = {attribute.name for attribute in floor.data.color_attributes}
+    assert names == {f"{name}{end}" for name in ("Radiosity", "Irradiance") for end in ("", ".0001", ".0002")}
+    bake_selected()
+    assert {attribute.name for attribute in floor.data.color_attributes} == {"Radiosity", "Irradiance"}
+
+
+def test_an_attribute_of_the_artists_with_the_name_of_a_set_comes_back(room):
+    floor, _ = room
+    floor.data.color_attributes.new("Radiosity.0002", "FLOAT_COLOR", "POINT")
+    bake_range()
+    assert floor.data.color_attributes["Radiosity.0002"].domain == "CORNER"
+    restore(room, bpy.context.view_layer)
+    assert floor.data.color_attributes["Radiosity.0002"].domain == "POINT"
+
+
+def test_the_last_bake_can_be_relit_afterwards(room):
+    bake_range()
+    bpy.data.lights["Lamp"].animation_data_clear()
+    bpy.data.lights["Lamp"].color = (0.0, 1.0, 0.0)
+    assert bpy.ops.radiosity.relight() == {"FINISHED"}
+
+
+def test_progress_counts_over_all_frames(room):
+    told = []
+    settings = BakeSettings(quality="DRAFT", minimum_size=0.8, output="ORIGINAL")
+    bake_frames(bpy.context, room, settings, range(1, 3), progress=told.append)
+    shares = [message.share for message in told]
+    assert shares == sorted(shares) and 0.0 <= shares[0] < 0.1 and shares[-1] == pytest.approx(1.0)
+    assert told[0].stage.startswith("Frame 1: ") and told[-1].stage.startswith("Frame 2: ")
+
+
+def saved(tmp_path, monkeypatch):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "room.blend"))
+    monkeypatch.chdir(tmp_path)
+
+
+def test_each_frame_can_have_a_file_of_its_own(room, tmp_path, monkeypatch):
+    move_the_box(room[1])
+    bpy.context.scene.radiosity.output = "REFINED"
+    saved(tmp_path, monkeypatch)
+    assert bake_range("FILES") == [True, False, True]
+    assert bpy.context.scene.frame_current == 2
+    shown = colours_of(bpy.data.objects["Floor Radiosity"].data)
+    for frame in (1, 2, 3):
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / f"room_{frame:04d}.blend"))
+        assert bpy.context.scene.frame_current == frame
+        mesh = bpy.data.objects["Floor Radiosity"].data
+        assert {attribute.name for attribute in mesh.color_attributes} == {"Radiosity", "Irradiance"}
+        if frame == 2:
+            np.testing.assert_array_equal(colours_of(mesh), shown)
+
+
+def test_files_of_frames_need_a_file_to_lie_beside(room):
+    with pytest.raises(RuntimeError, match="Save the file first"):
+        bake_range("FILES")
+
+
+def test_the_command_bakes_a_range_into_one_file(room, tmp_path, monkeypatch, capsys):
+    saved(tmp_path, monkeypatch)
+    assert main(["--frames", "1:2", "--output", "baked.blend", "--report", "report.json"]) == 0
+    assert "2 frames" in capsys.readouterr().out
+    frames = json.loads(Path("report.json").read_text())["frames"]
+    assert [(frame["frame"], frame["traced"]) for frame in frames] == [(1, True), (2, False)]
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "baked.blend"))
+    names = {attribute.name for attribute in bpy.data.objects["Floor"].data.color_attributes}
+    assert {"Radiosity.0001", "Radiosity.0002"} <= names
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_the_command_writes_a_file_for_each_frame(room, tmp_path, monkeypatch):
+    saved(tmp_path, monkeypatch)
+    assert main(["--frames", "1:2", "--frames-to", "FILES", "--output", "baked.blend"]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["baked_0001.blend", "baked_0002.blend", "room.blend"]
+
+
+@pytest.mark.parametrize(("frames", "sentence"), [("1-3", "not a range"), ("3:1", "empty")])
+def test_the_command_refuses_what_is_no_range(room, tmp_path, monkeypatch, capsys, frames, sentence):
+    saved(tmp_path, monkeypatch)
+    assert main(["--frames", frames, "--output", "baked.blend"]) == 1
+    assert sentence in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["room.blend"]
