@@ -126,8 +126,9 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     meshes = [obj for obj in context.selected_objects if shows_surfaces(source_of(obj))]
     if not meshes:
         return "Select the meshes to bake"
-    if all(source_of(obj).library is not None for obj in meshes):
-        return "The selected meshes are linked from another file; make them local to bake"
+    in_place = context.scene.radiosity.output == "ORIGINAL"
+    if in_place and all(source_of(obj).library is not None for obj in meshes):
+        return "The selected objects are linked from another file; choose Refined Mesh, or make them local to bake"
     return None
 
 

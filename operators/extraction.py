@@ -64,7 +64,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
     """
     warnings: list[str] = []
     skipped: dict[_Reason, list[str]] = {}
-    wanted = _wanted(objects, output, skipped)
+    wanted = _wanted(context.scene, objects, output, skipped)
     outputs = outputs_by_source()
     view_layer = context.view_layer
     with sources_shown(outputs), shown_as_rendered(context) as (depsgraph, participants):
@@ -100,8 +100,12 @@ class _Reason:
 
 _NOT_A_MESH = _Reason("is not a mesh", "are not meshes")
 _LINKED = _Reason(
-    "is linked from another file; make it local to bake it",
-    "are linked from another file; make them local to bake them",
+    "is linked from another file; Refined Mesh bakes it, or make it local",
+    "are linked from another file; Refined Mesh bakes them, or make them local",
+)
+_OF_LINKED_COLLECTION = _Reason(
+    "is in a collection that is linked from another file; make a library override of it to bake it",
+    "are in collections that are linked from another file; make library overrides of them to bake them",
 )
 _WITHOUT_A_MESH = _Reason(
     "has no mesh of its own; Refined Mesh bakes it",
@@ -113,16 +117,22 @@ _NOT_RENDERED = _Reason("is not shown in renders", "are not shown in renders")
 
 
 def _wanted(
-    objects: Iterable[bpy.types.Object], output: str, skipped: dict[_Reason, list[str]]
+    scene: bpy.types.Scene,
+    objects: Iterable[bpy.types.Object],
+    output: str,
+    skipped: dict[_Reason, list[str]],
 ) -> list[bpy.types.Object]:
     wanted = []
+    linked_collections = {collection for collection in scene.collection.children_recursive if collection.library}
     for obj in dict.fromkeys(_that_makes_the_faces(source_of(obj)) for obj in objects):
         if not shows_surfaces(obj):
             skipped.setdefault(_NOT_A_MESH, []).append(obj.name)
         elif not obj.radiosity_settings.receives:
             skipped.setdefault(_NOT_RECEIVING, []).append(obj.name)
-        elif obj.library is not None:
+        elif obj.library is not None and output == "ORIGINAL":
             skipped.setdefault(_LINKED, []).append(obj.name)
+        elif obj.library is not None and linked_collections.intersection(obj.users_collection):
+            skipped.setdefault(_OF_LINKED_COLLECTION, []).append(obj.name)
         elif output == "ORIGINAL" and obj.type != "MESH":
             skipped.setdefault(_WITHOUT_A_MESH, []).append(obj.name)
         else:
@@ -171,8 +181,9 @@ def _misplaced(targets: list[Target], outputs: Outputs, view_layer: bpy.types.Vi
         if output is None or not shows_place(output) or not output.visible_get(view_layer=view_layer):
             continue
         if not same_place(output.matrix_world, target.matrix):
+            what = "its own file puts it" if output.radiosity.source.library else "its animation or constraints put it"
             sentences.append(
-                f'"{output.name}" was moved, but "{target.name}" is where its animation or constraints put it; '
+                f'"{output.name}" was moved, but "{target.name}" is where {what}; '
                 "it was baked there. Move the original instead"
             )
     return sentences

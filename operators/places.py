@@ -108,15 +108,27 @@ def is_bent_by_parent(obj: bpy.types.Object) -> bool:
 
 
 def show_again(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journal: Journal) -> None:
-    """Put `source` beside its refined objects if it was deleted from its scene; only our pointer kept it."""
-    if source.users_collection:
+    """Put `source` beside its refined objects if it is in no scene, where only our pointer keeps it.
+
+    It was deleted, or is of another file and can be hidden in no other way.
+    """
+    if source.library is None and source.users_collection:
         return
     for collection in {collection for output in outputs for collection in output.users_collection}:
-        link(source, collection, journal)
+        if source.name_full not in {obj.name_full for obj in collection.objects}:
+            link(source, collection, journal)
+
+
+def take_out(source: bpy.types.Object, journal: Journal) -> None:
+    """Take `source`, of another file, out of the scenes of this one: nothing of it may be written."""
+    for collection in source.users_collection:
+        if collection.library is None:
+            journal.on_failure(collection.objects.link, source)
+            collection.objects.unlink(source)
 
 
 def _was_moved(output: bpy.types.Object, source: bpy.types.Object) -> bool:
-    if not shows_place(output):
+    if source.library is not None or not shows_place(output):
         return False
     if output.parent != source.parent or not same_place(output.matrix_parent_inverse, source.matrix_parent_inverse):
         return True

@@ -24,7 +24,7 @@ from .journal import Journal
 from .layers import Subdivision, carry, carry_vertex_groups
 from .likeness import take_after
 from .local_mesh import inverse_of
-from .places import is_bent_by_parent, remember_place
+from .places import is_bent_by_parent, remember_place, take_out
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
 from .targets import Target
 from .textured import Displays
@@ -53,7 +53,8 @@ def store_refined(
     # with all that belongs to them.
     mesh.validate()
     for collection in source.users_collection:
-        link(output, collection, journal)
+        if collection.library is None:
+            link(output, collection, journal)
     _take_place(source, output, view_layer, journal)
     return output
 
@@ -219,6 +220,9 @@ def _take_place(
         select(source, source.select_get(view_layer=view_layer), view_layer, journal)
     if view_layer.objects.active == source:
         make_active(output, view_layer, journal)
+    if source.library is not None:
+        take_out(source, journal)
+        return
     remember_record(source, journal)
     record = source.radiosity
     record.kind = HIDDEN_SOURCE

@@ -62,11 +62,12 @@ def test_the_button_is_grey_while_a_bake_runs(monkeypatch):
     assert "running" in reason_not_to_bake(bpy.context)
 
 
-def test_the_button_is_grey_when_all_selected_meshes_are_linked(tmp_path):
+def test_the_button_is_grey_when_linked_meshes_alone_shall_be_baked_in_place(tmp_path):
     add_cube("Linked")
     linked = linked_from_library(tmp_path, "objects", "Linked")
     bpy.context.scene.collection.objects.link(linked)
     linked.select_set(True)
+    bpy.context.scene.radiosity.output = "ORIGINAL"
     assert "linked from another file" in reason_not_to_bake(bpy.context)
 
 
