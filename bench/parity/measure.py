@@ -100,9 +100,11 @@ def positions(thing: Any) -> Floats:
 
 def our_picture(case: Case) -> Floats:
     """Bake everything that can be baked to refined meshes and return what the camera sees of it."""
+    from radiosity_bake.operators.targets import shows_surfaces
+
     bpy.context.scene.radiosity.output = "REFINED"
-    meshes = [obj for obj in bpy.context.view_layer.objects if obj.type == "MESH" and not obj.hide_render]
-    cycles.select(meshes)
+    shown = [obj for obj in bpy.context.view_layer.objects if shows_surfaces(obj) and not obj.hide_render]
+    cycles.select(shown)
     bpy.ops.radiosity.bake()
     return cycles.picture(WIDTH, HEIGHT, False)
 
