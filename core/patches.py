@@ -118,14 +118,13 @@ class PatchTree:
         return triangle_areas(self.points[self.corners[nodes]])
 
     def expanded(self, nodes: Ints) -> tuple[Ints, Ints, Floats]:
-        """The nodes with a triangle of their own that nodes (m,) consist of.
+        """The surfaces' triangles that nodes (m,) consist of or lie in.
 
         Returns
         -------
         row : (p,) int
             Places in `nodes`.
-        inside : (p,) int
-            Nodes that are no clusters: those themselves, and the members of clusters.
+        triangle : (p,) int
         share : (p,) float
             Of the node's area.
         """
@@ -136,7 +135,7 @@ class PatchTree:
         share = self.areas(inside) / self.clusters.areas()[nodes[row] - self.first_cluster]
         return (
             np.concatenate([single, row]),
-            np.concatenate([nodes[single], inside]),
+            self.triangle[np.concatenate([nodes[single], inside])],
             np.concatenate([np.ones(len(single)), share]),
         )
 

@@ -107,15 +107,15 @@ def vertex_of_corner(mesh: Any) -> NDArray[np.int32]:
     return corners
 
 
-def picture(width: int, height: int, path_traced: bool) -> Floats:
+def picture(width: int, height: int, path_traced: bool, samples: int = PICTURE_SAMPLES) -> Floats:
     """Return (h, w, 3) the scene's radiance as its camera sees it, rows from above.
 
     Parameters
     ----------
     path_traced : bool
-        With many samples, and denoised; else with just as many as smooth outlines need.
+        With `samples` for each pixel, and denoised; else with just as many as smooth outlines need.
     """
-    set_up(PICTURE_SAMPLES if path_traced else OWN_PICTURE_SAMPLES)
+    set_up(samples if path_traced else OWN_PICTURE_SAMPLES)
     scene = bpy.context.scene
     if path_traced:
         scene.cycles.use_denoising = True

@@ -28,15 +28,20 @@ def write(path: Path, theirs: Floats, ours: Floats) -> None:
     """
     from PIL import Image
 
-    brightest = theirs.max(axis=2)
-    lit = brightest[brightest > 0.0]
-    exposure = -np.log(1.0 - MIDDLE) / (float(np.median(lit)) if len(lit) else 1.0)
-    first, second = displayed(theirs * exposure), displayed(ours * exposure)
+    first, second = exposed(theirs, ours)
     difference = np.clip(0.5 + ENLARGED * (second - first), 0.0, 1.0)
     gap = np.ones((len(first), GAP, 3))
     sheet = np.concatenate([first, gap, second, gap, difference], axis=1)
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(np.round(sheet * 255.0).astype(np.uint8)).save(path, quality=86, optimize=True)
+
+
+def exposed(theirs: Floats, ours: Floats) -> tuple[Floats, Floats]:
+    """Return both as display colours 0..1, exposed alike for the median of what is not black in the first."""
+    brightest = theirs.max(axis=2)
+    lit = brightest[brightest > 0.0]
+    exposure = -np.log(1.0 - MIDDLE) / (float(np.median(lit)) if len(lit) else 1.0)
+    return displayed(theirs * exposure), displayed(ours * exposure)
 
 
 def displayed(light: Floats) -> Floats:
