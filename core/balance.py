@@ -13,10 +13,12 @@ from .direct import Emitters, direct_light
 from .direct_light import DirectLight
 from .errors import UnsolvableError
 from .geometry import order_along_curve
+from .patches import PatchTree
 from .rows import ESCAPED, Cover, Shares
-from .scene import Floats, Ints
+from .scene import Floats, Ints, Texture
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
+from .textures import mean_colours
 from .transport import Transport, sample_points
 
 POINTS_PER_PATCH = 4
@@ -40,24 +42,40 @@ class TriangleMeans:
     ----------
     count : int
         Elements.
-    element, triangle : (p,) int
-        An entry for each triangle of a cluster, and one for what lies in a triangle.
+    element, node : (p,) int
+        An entry for each member of a cluster, and one for what lies in a triangle.
     weight : (p,) float
         They add up to 1 for each element.
+    triangle_of_node : (nodes,) int
+    corners_of_node : (nodes, 3, 3) float
+        Barycentric coordinates of the nodes' corners in their triangles.
     """
 
     count: int
     element: Ints
-    triangle: Ints
+    node: Ints
     weight: Floats
+    triangle_of_node: Ints
+    corners_of_node: Floats
 
-    def of(self, values: Floats) -> Floats:
-        """Mean over each element, (count, k), of values (triangles, k)."""
-        columns = [
-            np.bincount(self.element, weights=self.weight * column[self.triangle], minlength=self.count)
-            for column in values.T
-        ]
+    @staticmethod
+    def over(tree: PatchTree, nodes: Ints) -> TriangleMeans:
+        """Over nodes (m,)."""
+        return TriangleMeans(len(nodes), *tree.expanded(nodes), tree.triangle, tree.weights)
+
+    def of(self, values: Floats, texture: Texture | None = None) -> Floats:
+        """Mean over each element, (count, k), of values (triangles, k), some of which vary over their triangle."""
+        inside = mean_colours(values, texture, self.triangle_of_node[self.node], self.corners_of_node, self.node)
+        columns = [np.bincount(self.element, weights=self.weight * column, minlength=self.count) for column in inside.T]
         return np.stack(columns, axis=1)
+
+    def reflectance(self, surfaces: Surfaces) -> Floats:
+        """Of each element, (count, 3)."""
+        return self.of(surfaces.reflectance, surfaces.reflectance_texture)
+
+    def emission(self, surfaces: Surfaces) -> Floats:
+        """Of each element, (count, 3), W m^-2 sr^-1."""
+        return self.of(surfaces.emission, surfaces.emission_texture)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +112,7 @@ class Balance:
     def recoloured(self, surfaces: Surfaces) -> Balance:
         """The same elements, with the reflectance and emission that `surfaces` have."""
         means = self.means
-        return replace(self, reflectance=means.of(surfaces.reflectance), emission=means.of(surfaces.emission))
+        return replace(self, reflectance=means.reflectance(surfaces), emission=means.emission(surfaces))
 
 
 def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
@@ -112,7 +130,7 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     share = np.ones(len(elements))
     share[number[twins]] = cover.covered.mean(axis=1)
     share[number[cover.element]] -= cover.covered.mean(axis=1)
-    means = TriangleMeans(len(base), *tree.expanded(base >> 1))
+    means = TriangleMeans.over(tree, base >> 1)
     return Balance(
         elements,
         base,
@@ -121,8 +139,8 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         tree.areas(base >> 1) * (1.0 - buried) * share,
         buried,
         means,
-        means.of(surfaces.reflectance),
-        means.of(surfaces.emission),
+        means.reflectance(surfaces),
+        means.emission(surfaces),
     )
 
 

@@ -20,6 +20,7 @@ from .patches import PatchTree
 from .rows import ESCAPED, Cover
 from .sampling import Singles
 from .scene import Floats, Ints
+from .textures import cell_centres, cell_corners
 from .visibility import Hits
 
 MOST_CELLS = 2**21
@@ -61,6 +62,8 @@ class Cells:
         The coarse patch of each cell.
     centre : (cells, 2) float32
         Barycentric weights of corners 1 and 2 in it.
+    triangle : (cells,) int
+        The surfaces' triangle of each.
     areas : (cells,) float
     element : (2 * cells + twins + copies,) int
         The element, or twin, that each place lies on.
@@ -94,7 +97,9 @@ class Cells:
         for side in np.unique(along):
             chosen = roots[along == side]
             index = self._first[chosen][:, None] + np.arange(side**2)
-            self.centre[index] = _centres(int(side))
+            self.centre[index] = cell_centres(int(side))
+        self.triangle = tree.triangle[self.node]
+        self._corners_of_node = tree.weights
         a, b, c = (tree.points[tree.corners[roots, k]] for k in range(3))
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
         self.areas: Floats = np.repeat(area / cells, cells)
@@ -111,6 +116,12 @@ class Cells:
         self.unlit = np.concatenate([unlit, np.zeros(len(cover.element) + len(self.copied), dtype=bool)])
         twins = cover.first_twin + np.arange(len(cover.element))
         self.element: Ints = np.concatenate([element, twins, twin[self.copied]])
+
+    def corners(self, cells: Ints) -> Floats:
+        """Barycentric coordinates of the corners of cells (n,) in the surfaces' triangles, (n, 3, 3)."""
+        node = self.node[cells]
+        corners: Floats = cell_corners(self.centre[cells], self._along[node]) @ self._corners_of_node[node]
+        return corners
 
     def places(self, found: Hits) -> NDArray[np.int32]:
         """The place that each ray met, or `ESCAPED`, (n,)."""
@@ -139,14 +150,6 @@ class Cells:
             thin = found.distance[short] < self._shortest_reach
             place[short] = np.where(thin, self._twin[place[short]], self._copy[place[short]])
         return place
-
-
-def _centres(along: int) -> Singles:
-    """Barycentric weights of the cells' centres in a patch with so many along each edge, (along^2, 2)."""
-    row = np.repeat(np.arange(along), 2 * (along - np.arange(along)) - 1)
-    within = np.arange(along**2) - row * (2 * along - row)
-    third = np.where(within & 1, 2.0 / 3.0, 1.0 / 3.0)
-    return (np.stack([row + third, (within >> 1) + third], axis=1) / along).astype(np.float32)
 
 
 @dataclass(frozen=True, eq=False)

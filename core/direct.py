@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .direct_light import DirectLight
+from .emitting_pieces import emitting_pieces, piece_areas
 from .enclosure import enclosed_sides
 from .form_factors import above_horizon, heights_of, piece_factor
 from .lamps import lamp_light
@@ -59,7 +60,9 @@ class Emitters:
     Attributes
     ----------
     triangle : (k,) int
-        Index into the surfaces' triangles.
+        Index into the surfaces' triangles, which may have several pieces where their emission varies.
+    within : (k, 3, 3) float
+        Barycentric coordinates of the piece's corners in it.
     corners : (k, 3, 3) float
     normals : (k, 3) float
     areas : (k,) float
@@ -72,6 +75,7 @@ class Emitters:
     """
 
     triangle: Ints
+    within: Floats
     corners: Floats
     normals: Floats
     areas: Floats
@@ -107,7 +111,7 @@ class Emitters:
 
     def recoloured(self, surfaces: Surfaces) -> Emitters:
         """The same emitters, with the emission and the lamps that `surfaces` have."""
-        return replace(self, radiance=surfaces.emission[self.triangle], lamps=surfaces.lamps)
+        return replace(self, radiance=surfaces.emission_over(self.triangle, self.within), lamps=surfaces.lamps)
 
 
 def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, seed: int) -> Emitters:
@@ -118,16 +122,18 @@ def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, see
     lit : (shells, 2) bool
         Sides that light reaches: what emits into the inside of a solid is of no use.
     """
-    chosen = np.flatnonzero(surfaces.emission.any(axis=1))
+    chosen, within = emitting_pieces(surfaces)
     enclosed = np.zeros((len(chosen), 2), dtype=bool)
     if len(chosen) > FEW_EMITTERS:
-        enclosed = enclosed_sides(surfaces, chosen, rays, seed)
+        whole, piece_of = np.unique(chosen, return_inverse=True)
+        enclosed = enclosed_sides(surfaces, whole, rays, seed)[piece_of]
     return Emitters(
         chosen,
-        surfaces.points[surfaces.triangles[chosen]],
+        within,
+        np.einsum("kij,kjx->kix", within, surfaces.points[surfaces.triangles[chosen]]),
         surfaces.normals[chosen],
-        surfaces.areas[chosen],
-        surfaces.emission[chosen],
+        surfaces.areas[chosen] * piece_areas(within),
+        surfaces.emission_over(chosen, within),
         ~lit[surfaces.shell_of_triangle[chosen], 1],
         enclosed,
         surfaces.lamps,

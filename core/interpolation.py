@@ -16,8 +16,8 @@ from .cells import Cells
 from .direct import LUMINANCE
 from .lit import Lit
 from .patches import PatchTree
+from .sampling import Singles
 from .scene import Floats
-from .surfaces import Surfaces
 
 STEEP = 1.0
 """Difference between a face's corners, relative to their mean, above which a face that is a whole patch shows the
@@ -71,15 +71,16 @@ class InterpolatedRadiance:
     Parameters
     ----------
     on_faces : PlacesOnFaces
+    reflectance : (cells, 3) float32
     emission : (triangles, 3) float, W m^-2 sr^-1
         Emitted radiance that rays are to see.
     solved : (places, 3) float
         What places show that lie on no face: meshes that are not baked, twins of covered elements.
     """
 
-    def __init__(self, on_faces: PlacesOnFaces, surfaces: Surfaces, emission: Floats, solved: Floats) -> None:
+    def __init__(self, on_faces: PlacesOnFaces, reflectance: Singles, emission: Floats, solved: Floats) -> None:
         self._on_faces, self._solved = on_faces, solved
-        self._reflectance = surfaces.reflectance.astype(np.float32)[on_faces.triangle]
+        self._reflectance = reflectance[on_faces.place >> 1]
         self._emission = emission.astype(np.float32)[on_faces.triangle]
 
     def at(self, shown: Lit) -> Floats:

@@ -22,6 +22,7 @@ from .interpolation import InterpolatedRadiance, PlacesOnFaces
 from .lit import Lit
 from .output import baked_meshes
 from .result import BakeResult
+from .sampling import Singles
 from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
 from .solve import Solution, solve_balance
@@ -73,10 +74,12 @@ class PatchLight:
     solution : Solution
     seen : (places, 3) float, W m^-2 sr^-1
         What rays see of it.
+    reflectance : (cells, 3) float32
     """
 
     solution: Solution
     seen: Floats
+    reflectance: Singles
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,8 +123,18 @@ def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
     direct = unreflected_light(balance, patches.direct, emitters, surfaces)
     solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas)
     check_solved(solution, surfaces)
-    seen = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)
-    return PatchLight(solution, seen[patches.cells.element])
+    cells = patches.cells
+    seen = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)[cells.element]
+    reflectance = surfaces.reflectance[cells.triangle].astype(np.float32)
+    if surfaces.reflectance_texture is not None:
+        # The patch has one irradiance, but rays see what the texture makes of it.
+        varied = np.flatnonzero(np.isin(cells.triangle, surfaces.reflectance_texture.triangle))
+        reflectance[varied] = surfaces.reflectance_over(cells.triangle[varied], cells.corners(varied))
+        incident = np.zeros((int(cells.element.max()) + 1, 3))
+        incident[balance.elements] = solution.incident
+        for side in (2 * varied, 2 * varied + 1):
+            seen[side] = incident[cells.element[side]] * reflectance[varied]
+    return PatchLight(solution, seen, reflectance)
 
 
 def looked_again(
@@ -134,7 +147,7 @@ def looked_again(
 ) -> tuple[Lit, Radiance]:
     """Look the gather rays up again in the light of the vertices; returns the faces' light and what rays saw last."""
     left = left_emission(surfaces, patches.emitters)
-    interpolated = InterpolatedRadiance(on_faces, surfaces, left, light.seen)
+    interpolated = InterpolatedRadiance(on_faces, light.reflectance, left, light.seen)
     for _ in range(LOOKS):
         radiance = Radiance.of(patches.cells, interpolated.at(shown), surfaces.world)
         shown = replace(shown, gathered=look_again(workers, radiance, shown.gathered))

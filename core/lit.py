@@ -48,7 +48,8 @@ class Lit:
 
     def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
         """Face sides whose error counts: neither emitters nor hidden altogether, (f,)."""
-        dark = np.all(surfaces.emission[self.faces.triangle[self.face]] == 0.0, axis=1)
+        emission = surfaces.emission_over(self.faces.triangle, self.faces.weights)
+        dark = np.all(emission[self.face] == 0.0, axis=1)
         shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
         return dark & shown
 

@@ -7,10 +7,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .geometry import triangle_areas
 from .result import BakedMesh
 from .scene import Floats, Ints, Scene
 from .subdivision import Faces
 from .surfaces import Surfaces
+from .textures import corner_colours
 
 
 def baked_meshes(
@@ -38,6 +40,7 @@ def baked_meshes(
     back, has_back = np.zeros_like(front), np.zeros(count, dtype=bool)
     back[face[count:]], has_back[face[count:]] = irradiance[count:], True
     turned = (~lit[:, 0] & lit[:, 1])[surfaces.shell_of_triangle[faces.triangle]]
+    reflectance, emission = _colours_at_corners(surfaces, faces)
     warnings, meshes = [], []
     mesh_of_face = surfaces.mesh_of_triangle[faces.triangle]
     for number, mesh in enumerate(scene.meshes):
@@ -49,7 +52,8 @@ def baked_meshes(
                 f"{mesh.name}: light reaches only the back of its faces; "
                 + ("the refined mesh is turned over" if output == "REFINED" else "flip its normals to see it lit")
             )
-        values = front[chosen], back[chosen] if has_back[chosen].any() else None
+        behind = back[chosen] if has_back[chosen].any() else None
+        values = front[chosen], behind, reflectance[chosen], emission[chosen]
         if output == "ORIGINAL":
             meshes.append(_original(scene, surfaces, faces, number, chosen, *values))
         else:
@@ -57,8 +61,26 @@ def baked_meshes(
     return tuple(meshes), warnings
 
 
+def _colours_at_corners(surfaces: Surfaces, faces: Faces) -> tuple[Floats, Floats]:
+    """Reflectance and emission at the corners of faces, (f, 3, 3) each."""
+    where = faces.corners, faces.triangle, faces.weights
+    areas = triangle_areas(faces.points[faces.corners])
+    return (
+        corner_colours(surfaces.reflectance, surfaces.reflectance_texture, *where, areas),
+        corner_colours(surfaces.emission, surfaces.emission_texture, *where, areas),
+    )
+
+
 def _original(
-    scene: Scene, surfaces: Surfaces, faces: Faces, number: int, chosen: Ints, front: Floats, back: Floats | None
+    scene: Scene,
+    surfaces: Surfaces,
+    faces: Faces,
+    number: int,
+    chosen: Ints,
+    front: Floats,
+    back: Floats | None,
+    reflectance: Floats,
+    emission: Floats,
 ) -> BakedMesh:
     """Values at the corners of the input's triangles, in their order; triangles that were left out stay black."""
     mesh = scene.meshes[number]
@@ -70,11 +92,9 @@ def _original(
         full[place] = values
         return full
 
-    def radiosity(irradiance: Floats) -> Floats:
-        return mesh.emission[:, None, :] + mesh.reflectance[:, None, :] * irradiance
-
-    irradiance = spread(front)
+    irradiance, radiosity = spread(front), spread(emission + reflectance * front)
     behind = None if back is None else spread(back)
+    radiosity_behind = None if back is None else spread(emission + reflectance * back)
     return BakedMesh(
         mesh=number,
         vertices=mesh.vertices,
@@ -82,9 +102,9 @@ def _original(
         parent_triangle=np.arange(count),
         barycentric=np.broadcast_to(np.eye(3), (count, 3, 3)).copy(),
         corner_normals=mesh.corner_normals,
-        radiosity=np.nan_to_num(radiosity(irradiance)),
+        radiosity=radiosity,
         irradiance=irradiance,
-        radiosity_back=None if behind is None else np.nan_to_num(radiosity(behind)),
+        radiosity_back=radiosity_behind,
         irradiance_back=behind,
     )
 
@@ -105,6 +125,8 @@ def _refined(
     chosen: Ints,
     front: Floats,
     back: Floats | None,
+    reflectance: Floats,
+    emission: Floats,
     turned: NDArray[np.bool_],
 ) -> BakedMesh:
     """The conforming subdivision of one mesh, shells that are lit from behind turned over."""
@@ -116,7 +138,6 @@ def _refined(
     kept = np.concatenate([np.arange(first, last), made])
     index[kept] = np.arange(len(kept))
     triangle = faces.triangle[chosen]
-    emission, reflectance = surfaces.emission[triangle][:, None], surfaces.reflectance[triangle][:, None]
     normals = faces.corner_normals(surfaces)[chosen]
     irradiance, behind = front, back
     if back is not None and turned.any():

@@ -118,13 +118,14 @@ class PatchTree:
         return triangle_areas(self.points[self.corners[nodes]])
 
     def expanded(self, nodes: Ints) -> tuple[Ints, Ints, Floats]:
-        """The surfaces' triangles that nodes (m,) consist of or lie in.
+        """The nodes with a triangle of their own that nodes (m,) consist of.
 
         Returns
         -------
         row : (p,) int
             Places in `nodes`.
-        triangle : (p,) int
+        inside : (p,) int
+            Nodes that are no clusters: those themselves, and the members of clusters.
         share : (p,) float
             Of the node's area.
         """
@@ -135,7 +136,7 @@ class PatchTree:
         share = self.areas(inside) / self.clusters.areas()[nodes[row] - self.first_cluster]
         return (
             np.concatenate([single, row]),
-            self.triangle[np.concatenate([nodes[single], inside])],
+            np.concatenate([nodes[single], inside]),
             np.concatenate([np.ones(len(single)), share]),
         )
 

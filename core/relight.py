@@ -34,6 +34,9 @@ from .scene import Lamp, Scene, SurfaceMesh
 from .surfaces import Surfaces
 from .workers import Workers
 
+LOST_LIGHT = 0.001
+"""Share of an emitting triangle's light that may come from where it was dark: cells that a piece's border cuts."""
+
 
 class ChangedSceneError(BakeError):
     """The scene is not the one that was baked."""
@@ -216,10 +219,23 @@ def check_sources(kept: KeptTransport, scene: Scene, surfaces: Surfaces) -> None
     before = kept.surfaces
     new = np.flatnonzero(surfaces.emission.any(axis=1) & ~before.emission.any(axis=1))
     if len(new):
-        name = scene.meshes[surfaces.mesh_of_triangle[new[0]]].name
-        raise ChangedSceneError(f'"{name}" gave no light where it does now when the scene was baked; bake again')
+        raise ChangedSceneError(_gave_no_light(scene, surfaces, new[0]))
+    texture, emitters = surfaces.emission_texture, kept.patches.emitters
+    if texture is not None:
+        total = surfaces.areas * surfaces.emission.sum(axis=1)
+        radiance = surfaces.emission_over(emitters.triangle, emitters.within).sum(axis=1)
+        shown = np.bincount(emitters.triangle, weights=emitters.areas * radiance, minlength=len(total))
+        # Pieces of a texture that were dark were left out.
+        dark = texture.triangle[(shown < (1.0 - LOST_LIGHT) * total)[texture.triangle]]
+        if len(dark):
+            raise ChangedSceneError(_gave_no_light(scene, surfaces, dark[0]))
     for lamp, earlier in zip(surfaces.lamps, before.lamps, strict=True):
         if lamp.strength.any() and not earlier.strength.any():
             raise ChangedSceneError(f'"{lamp.name}" gave no light when the scene was baked; bake again')
     if surfaces.world.any() and not before.world.any():
         raise ChangedSceneError("The World gave no light when the scene was baked; bake again")
+
+
+def _gave_no_light(scene: Scene, surfaces: Surfaces, triangle: int) -> str:
+    name = scene.meshes[surfaces.mesh_of_triangle[triangle]].name
+    return f'"{name}" gave no light where it does now when the scene was baked; bake again'

@@ -14,6 +14,29 @@ Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
+class Texture:
+    """Colours that vary over triangles, each of which is cut evenly into small cells of one colour.
+
+    Attributes
+    ----------
+    triangle : (k,) int
+        The triangles that vary, in ascending order.
+    part : (k,) int
+        Vertices between triangles of the same part show the mean of them; other colours meet at a sharp edge.
+    along : (k,) int
+        Cells along each edge: a triangle has the square of it. Powers of two fit the midpoint splits of patches.
+    colours : (cells, 3) float32
+        Linear RGB of the cells of one triangle after the other, each triangle's as `core.textures.cell_centres` has
+        them.
+    """
+
+    triangle: Ints
+    part: Ints
+    along: Ints
+    colours: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
 class SurfaceMesh:
     """One mesh as it renders: world coordinates, triangles wound so that the front is counterclockwise.
 
@@ -37,6 +60,8 @@ class SurfaceMesh:
         Whether reflected light meets it. If not, it sends no light on that it receives, and hides none behind it.
     shadow : bool
         Whether it hides lamps and emitters.
+    reflectance_texture, emission_texture : Texture or None
+        Of the triangles over which they vary, in place of what is above.
     """
 
     name: str
@@ -48,6 +73,8 @@ class SurfaceMesh:
     baked: bool = True
     seen: bool = True
     shadow: bool = True
+    reflectance_texture: Texture | None = None
+    emission_texture: Texture | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
 from .geometry import lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
-from .scene import Floats, Ints, Lamp, Scene, SurfaceMesh
+from .scene import Floats, Ints, Lamp, Scene, SurfaceMesh, Texture
+from .textures import joined, mean_colours, with_means
 
 SMALLEST_AREA = 1e-14
 """Triangles with less than this share of the squared extent of the scene have no area that float32 rays could meet."""
@@ -38,6 +39,9 @@ class Surfaces:
     areas : (t,) float
     corner_normals : (t, 3, 3) float, unit
     reflectance, emission : (t, 3) float
+        Means, where they vary.
+    reflectance_texture, emission_texture : Texture or None
+        How they vary over some of the triangles.
     mesh_of_triangle, input_triangle : (t,) int
         The mesh, and the triangle's number in it.
     first_point_of_mesh : (meshes + 1,) int
@@ -67,6 +71,8 @@ class Surfaces:
     corner_normals: Floats
     reflectance: Floats
     emission: Floats
+    reflectance_texture: Texture | None
+    emission_texture: Texture | None
     mesh_of_triangle: Ints
     input_triangle: Ints
     first_point_of_mesh: Ints
@@ -100,6 +106,14 @@ class Surfaces:
         )
         moved: Floats = self.points - HAIR * self.extent * normalized(outward)[self.place_of_point]
         return moved
+
+    def reflectance_over(self, triangle: Ints, corners: Floats) -> Floats:
+        """Mean reflectance over parts of triangles, (n, 3), whose corners have barycentric coordinates (n, 3, 3)."""
+        return mean_colours(self.reflectance, self.reflectance_texture, triangle, corners)
+
+    def emission_over(self, triangle: Ints, corners: Floats) -> Floats:
+        """Mean emission over parts of triangles, (n, 3), as `reflectance_over`."""
+        return mean_colours(self.emission, self.emission_texture, triangle, corners)
 
     def recoloured(self, scene: Scene) -> Surfaces:
         """The same triangles, with the colours that they have in `scene`, whose meshes have the same shapes."""
@@ -165,24 +179,32 @@ def join(scene: Scene) -> Surfaces:
 def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
     """The fields of `Surfaces` that depend on colours; `kept` are the sound triangles of each mesh."""
 
-    def joined(values: list[Floats]) -> Floats:
+    def of_triangles(values: list[Floats]) -> Floats:
         return np.concatenate([v[k] for v, k in zip(values, kept, strict=True)]).astype(np.float64)
 
-    reflectance = np.nan_to_num(joined([mesh.reflectance for mesh in scene.meshes]), posinf=1.0)
+    reflectance = np.nan_to_num(of_triangles([mesh.reflectance for mesh in scene.meshes]), posinf=1.0)
     outside = ((reflectance < 0.0) | (reflectance > 1.0)).any(axis=1)
     mesh_of_triangle = np.repeat(np.arange(len(kept)), [len(keep) for keep in kept])
     names = [scene.meshes[mesh].name for mesh in np.unique(mesh_of_triangle[outside])]
-    emission = joined([mesh.emission for mesh in scene.meshes])
+    emission = of_triangles([mesh.emission for mesh in scene.meshes])
+    pale = joined([(mesh.reflectance_texture, k) for mesh, k in zip(scene.meshes, kept, strict=True)])
+    bright = joined([(mesh.emission_texture, k) for mesh, k in zip(scene.meshes, kept, strict=True)])
+    if pale is not None:
+        pale = replace(pale, colours=np.clip(np.nan_to_num(pale.colours, posinf=1.0), 0.0, 1.0))
+    if bright is not None:
+        bright = replace(bright, colours=_not_negative(bright.colours).astype(np.float32))
     return {
-        "reflectance": np.clip(reflectance, 0.0, 1.0),
-        "emission": _not_negative(emission),
+        "reflectance": with_means(np.clip(reflectance, 0.0, 1.0), pale),
+        "emission": with_means(_not_negative(emission), bright),
+        "reflectance_texture": pale,
+        "emission_texture": bright,
         "world": _not_negative(scene.world),
         "lamps": tuple(replace(lamp, strength=_not_negative(lamp.strength)) for lamp in scene.lamps),
         "colour_warnings": tuple(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names),
     }
 
 
-def _not_negative(light: Floats) -> Floats:
+def _not_negative(light: Floats | NDArray[np.float32]) -> Floats:
     """Light that is a finite number, 0 where it was none or negative."""
     sound: Floats = np.maximum(np.nan_to_num(np.asarray(light, dtype=np.float64), posinf=0.0), 0.0)
     return sound

@@ -236,7 +236,7 @@ def test_points_drawn_at_even_shares_fall_on_triangles_by_area(bumpy):
 def test_means_over_patches_weigh_by_area(bumpy):
     values = np.random.default_rng(3).random((len(bumpy.leaves()), 3))
     patches = np.concatenate([bumpy.patches(), bumpy.leaves()[:9]])
-    means = TriangleMeans(len(patches), *bumpy.expanded(patches)).of(values)
+    means = TriangleMeans.over(bumpy, patches).of(values)
     for row in range(0, len(patches), 5):
         own = patches[row : row + 1]
         if bumpy.is_cluster(own)[0]:
