@@ -3,13 +3,14 @@
 """A range of frames: what is traced, what is only lit again, where the light is kept, and that nothing else changes."""
 
 import json
+import time
 from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
 from radiosity_bake.core.settings import BakeSettings
-from radiosity_bake.operators.animation import bake_frames
+from radiosity_bake.operators.animation import RADIOSITY_OT_bake_frames, bake_frames
 from radiosity_bake.operators.command import main
 from radiosity_bake.operators.restore import restore
 
@@ -24,6 +25,7 @@ from tests.blender.making import (
     select_also,
 )
 from tests.blender.state import differences, file_state
+from tests.blender.test_modal import ESC, MOUSE, TIMER, ModalBake, Window, assert_left, until_it_ends
 
 ROUNDING = 1e-5
 """Of the largest value, as in the tests of relighting."""
@@ -224,3 +226,66 @@ def test_the_command_refuses_what_is_no_range(room, tmp_path, monkeypatch, capsy
     assert main(["--frames", frames, "--output", "baked.blend"]) == 1
     assert sentence in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["room.blend"]
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# From the window
+
+
+class ModalFrames(ModalBake):
+    """The operator's methods on a plain object, since Blender alone can make operators."""
+
+    frame_output = "ATTRIBUTES"
+
+    def __getattr__(self, name):
+        return getattr(RADIOSITY_OT_bake_frames, name).__get__(self)
+
+
+def begun():
+    operator, window = ModalFrames(), Window()
+    assert operator.invoke(window, None) == {"RUNNING_MODAL"}
+    return operator, window
+
+
+def test_from_the_window_frames_are_baked_one_after_the_other(room):
+    floor, _ = room
+    operator, window = begun()
+    assert operator.modal(window, MOUSE) == {"PASS_THROUGH"}
+    assert until_it_ends(operator, window) == {"FINISHED"}
+    assert_left(window)
+    assert [frame["traced"] for frame in report()["frames"]] == [True, False, False]
+    assert "Radiosity.0003" in floor.data.color_attributes
+    assert bpy.context.scene.frame_current == 2
+
+
+def test_esc_leaves_the_frames_and_changes_nothing(room):
+    before = file_state()
+    operator, window = begun()
+    assert operator.modal(window, ESC) == {"CANCELLED"}
+    assert_left(window)
+    assert not differences(before, file_state())
+    assert bpy.context.scene.frame_current == 2
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_a_frame_that_ends_in_edit_mode_waits_until_the_mode_is_left(room):
+    floor, _ = room
+    operator, window = begun()
+    bpy.ops.object.mode_set(mode="EDIT")
+    began = time.monotonic()
+    while "Leave edit mode to go on with the frames" not in (window.status or ""):
+        assert operator.modal(window, TIMER) == {"PASS_THROUGH"}
+        assert time.monotonic() - began < 10.0
+        time.sleep(0.01)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert until_it_ends(operator, window) == {"FINISHED"}
+    assert "Radiosity.0003" in floor.data.color_attributes
+
+
+def test_an_error_from_the_window_is_told_with_its_frame(room):
+    bpy.data.lights["Lamp"].energy = 0.0
+    operator, window = begun()
+    assert until_it_ends(operator, window) == {"CANCELLED"}
+    assert_left(window)
+    ((kind, sentence),) = operator.reports
+    assert kind == "ERROR" and sentence.startswith("Frame 1: ")
