@@ -53,11 +53,12 @@ def baked_meshes(
                 + ("the refined mesh is turned over" if output == "REFINED" else "flip its normals to see it lit")
             )
         behind = back[chosen] if has_back[chosen].any() else None
-        values = front[chosen], behind, reflectance[chosen], emission[chosen]
         if output == "ORIGINAL":
-            meshes.append(_original(scene, surfaces, faces, number, chosen, *values))
+            colours = reflectance[chosen], emission[chosen]
+            meshes.append(_original(scene, surfaces, faces, number, chosen, front[chosen], behind, *colours))
         else:
-            meshes.append(_refined(surfaces, faces, number, chosen, *values, turned[chosen]))
+            values = front[chosen], behind, turned[chosen], reflectance, emission
+            meshes.append(_refined(surfaces, faces, number, chosen, *values))
     return tuple(meshes), warnings
 
 
@@ -125,12 +126,21 @@ def _refined(
     chosen: Ints,
     front: Floats,
     back: Floats | None,
+    turned: NDArray[np.bool_],
     reflectance: Floats,
     emission: Floats,
-    turned: NDArray[np.bool_],
 ) -> BakedMesh:
-    """The conforming subdivision of one mesh, shells that are lit from behind turned over."""
+    """The conforming subdivision of one mesh, shells that are lit from behind turned over.
+
+    Parameters
+    ----------
+    chosen : (f,) int
+        Its faces, which all but the colours are of.
+    reflectance, emission : (faces, 3, 3) float
+        At the corners of all faces.
+    """
     chosen, front, back, turned = _without_collapsed(faces, chosen, front, back, turned)
+    reflectance, emission = reflectance[chosen], emission[chosen]
     first, last = surfaces.first_point_of_mesh[number : number + 2]
     made = np.flatnonzero(faces.mesh_of_point == number)
     made = np.intersect1d(made[made >= surfaces.first_point_of_mesh[-1]], faces.corners[chosen])
