@@ -8,7 +8,9 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .patches import PatchTree
 from .rows import Shares
 from .scene import Floats, Ints
 from .transport import Transport
@@ -16,6 +18,9 @@ from .transport import Transport
 THRESHOLD_MET = "every form factor is below the threshold"
 SIZE_MET = "every fragment whose form factor is above the threshold is at the minimum size"
 UNIFORM_MET = "every fragment is at the minimum size"
+ROWS_THAT_TELL = 64
+"""Rows that are asked first whether any form factor is above the threshold."""
+
 LIMIT_MET = "the memory limit allows no more fragments"
 
 
@@ -36,7 +41,7 @@ class Round:
     rays_moved : int
         Rays that met a split fragment and moved to a child without being traced.
     largest_form_factor : float
-        Over all pairs whose source could still be split; 0 if there is none.
+        Over all pairs whose source could still be split and that no round before has judged; 0 if there is none.
     """
 
     fragments: int
@@ -87,6 +92,8 @@ def refine(
 
     A fragment is split when it receives more than `threshold` of the energy that leaves some element, and its size is
     m = 2n or more. Fragments that are not split keep their rays; rays that met a split one move to the right child.
+    So the rays that there are name the next fragments to split, too, and new ones are traced only when they name none:
+    what a split fragment sees is the mean of what its parts see, and one of them sees as much or more.
 
     Parameters
     ----------
@@ -95,22 +102,43 @@ def refine(
     most_rays : int
         Rays that memory allows.
     """
-    tree, rounds = transport.tree, []
+    tree, full = transport.tree, False
+    rounds: list[Round] = []
+    large = fresh = _large(tree, smallest)
     while True:
-        fragments, rays_before = len(tree.patches()), transport.rays.rays
-        rows = trace_all(transport, seeds, report)
-        flagged, largest = _flagged(transport, threshold, smallest)
-        full = transport.kept_rays() + 4 * len(flagged) * transport.rays_per_row > most_rays
+        fragments, rays_before, rows = len(tree.patches()), transport.rays.rays, 0
+        trace = not (rounds and fresh.any())
+        if trace:
+            if rounds:
+                transport.drop_split_rows()
+            known = transport.row_count()
+            rows = trace_all(transport, seeds, report)
+            pairs = transport.shares_to(np.repeat(large, 2), known)
+        else:
+            pairs = transport.shares_to(np.repeat(fresh, 2))
+        highest = _highest_factors(transport, pairs, threshold)
+        flagged = np.flatnonzero(highest > threshold)
+        full |= len(flagged) > 0 and _rays_after(transport, flagged) > most_rays
         if full:
             flagged = flagged[:0]
         moved = 0
         if len(flagged):
             tree.divide(flagged)
-            moved = transport.follow_splits()
-        rounds.append(Round(fragments, rows, transport.rays.rays - rays_before, len(flagged), moved, float(largest)))
-        if len(flagged) == 0:
-            ended = LIMIT_MET if full else _why_ended(transport, threshold)
-            return Refinement(tuple(rounds), ended)
+            moved = transport.move_rays()
+        rays, largest = transport.rays.rays - rays_before, float(highest.max(initial=0.0))
+        rounds.append(Round(fragments, rows, rays, len(flagged), moved, largest))
+        if trace and len(flagged) == 0:
+            return Refinement(tuple(rounds), LIMIT_MET if full else _why_ended(transport, threshold))
+        # The rays that there are have told all they can of the patches from before.
+        before, large = np.append(large, np.zeros(len(tree) - len(large), dtype=bool)), _large(tree, smallest)
+        fresh = large & ~before
+
+
+def _rays_after(transport: Transport, flagged: Ints) -> int:
+    """Rays that are kept when the patches `flagged` have been split and all patches have their rows."""
+    traced = transport.has_row().reshape(-1, 2).any(axis=1)
+    waiting = np.count_nonzero(~traced[transport.tree.patches()]) - np.count_nonzero(~traced[flagged])
+    return int(transport.kept_rays() + (waiting + 4 * len(flagged)) * transport.rays_per_row)
 
 
 def refine_uniformly(
@@ -139,16 +167,11 @@ def refine_uniformly(
     return Refinement(tuple(rounds), ended)
 
 
-def _flagged(transport: Transport, threshold: float, smallest: float) -> tuple[Ints, float]:
-    """Leaves to split, and the largest form factor to a leaf that may be."""
-    tree = transport.tree
-    splittable = np.zeros(len(tree), dtype=bool)
-    patches = tree.patches()
-    splittable[patches] = tree.sizes(patches) >= 2.0 * smallest
-    if not splittable.any():
-        return np.zeros(0, dtype=np.int64), 0.0
-    highest = _highest_factors(transport, transport.shares_to(np.repeat(splittable, 2)), threshold)
-    return np.flatnonzero(highest > threshold), float(highest.max(initial=0.0))
+def _large(tree: PatchTree, smallest: float) -> NDArray[np.bool_]:
+    """Whether each node is a patch that may be split, (nodes,)."""
+    large, patches = np.zeros(len(tree), dtype=bool), tree.patches()
+    large[patches] = tree.sizes(patches) >= 2.0 * smallest
+    return large
 
 
 def _highest_factors(transport: Transport, shares: Shares, threshold: float) -> Floats:
@@ -178,9 +201,12 @@ def _highest_factors(transport: Transport, shares: Shares, threshold: float) -> 
 
 
 def _why_ended(transport: Transport, threshold: float) -> str:
-    shares = transport.shares_to(np.ones(2 * len(transport.tree), dtype=bool))
-    if (shares.share - shares.standard_error() > threshold).any():
-        return SIZE_MET
+    every = np.ones(2 * len(transport.tree), dtype=bool)
+    # Where fragments touch there are pairs above it, so that a few rows tell nearly always.
+    for few in (ROWS_THAT_TELL, None):
+        shares = transport.shares_to(every, 0, few)
+        if (shares.share - shares.standard_error() > threshold).any():
+            return SIZE_MET
     return SIZE_MET if (_highest_factors(transport, shares, threshold) > threshold).any() else THRESHOLD_MET
 
 

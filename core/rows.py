@@ -64,7 +64,7 @@ class Rows:
             np.zeros(0, np.int64),
         )
 
-    def taken(self, which: NDArray[np.bool_] | Ints) -> Rows:
+    def taken(self, which: NDArray[np.bool_] | Ints | slice) -> Rows:
         """Some of the rows."""
         return Rows(*(getattr(self, field.name)[which] for field in fields(self)))
 

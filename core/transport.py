@@ -151,9 +151,10 @@ class Transport:
             origins = patterns.positions[pattern] @ spread
             directions = patterns.directions[pattern] @ frames(normals, angle)
             clustered = np.flatnonzero(self.tree.is_cluster(part >> 1))
-            origins[clustered], directions[clustered] = self._leaving_clusters(
-                part[clustered], patterns, pattern[clustered], angle[clustered]
-            )
+            if len(clustered):
+                origins[clustered], directions[clustered] = self._leaving_clusters(
+                    part[clustered], patterns, pattern[clustered], angle[clustered]
+                )
             hits, root, weights, distance = self.look(origins.reshape(-1, 3), directions.reshape(-1, 3))
             hits = hits.reshape(-1, count)
             return Rows(
@@ -221,16 +222,28 @@ class Transport:
 
         Returns the number of rays moved; none is traced.
         """
-        moved = 0
+        self.drop_split_rows()
+        return self.move_rays()
+
+    def drop_split_rows(self) -> None:
+        """Forget the rows of patches that were split, whose parts are traced anew."""
         self.locator = Locator(self.tree)
-        split = np.append(np.repeat(~self.tree.is_patch(), 2), [False, False])
-        for k, table in enumerate(self.tables):
-            table = table.taken(~split[table.element])
+        patch = np.repeat(self.tree.is_patch(), 2)
+        self.tables = [table.taken(patch[table.element]) for table in self.tables]
+
+    def move_rays(self) -> int:
+        """Move the rays that met a patch that was split to the child they met, and return their number.
+
+        The rows of split patches stay, and tell of their parts together.
+        """
+        moved, tree = 0, self.tree
+        split = np.append(np.repeat(~tree.is_patch(), 2), [False, False])
+        for table in self.tables:
             flat = table.hits.reshape(-1)
             stale = np.flatnonzero(split[flat])
-            leaf = self.locator.leaves(table.root.reshape(-1)[stale], table.weights.reshape(-1, 2)[stale])
-            flat[stale] = 2 * leaf + (flat[stale] & 1)
-            self.tables[k] = table
+            root = table.root.reshape(-1)[stale].astype(np.int64)
+            leaf, _ = tree.descend(root, table.weights.reshape(-1, 2)[stale])
+            flat[stale] = 2 * tree.patch[leaf] + (flat[stale] & 1)
             moved += len(stale)
         return moved
 
@@ -240,11 +253,11 @@ class Transport:
         It is the form factor to a small source of the same area, and stays below 1 where they touch.
         """
         tree = self.tree
-        a, b, c = (tree.points[tree.corners[:, k]] for k in range(3))
-        middle = ((a + b + c) / 3.0).astype(np.float32)
-        area = (np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0).astype(np.float32)
-        normal = self.surfaces.normals[tree.triangle].astype(np.float32)
-        receiver, source = receivers >> 1, sources >> 1
+        nodes, place = np.unique(np.concatenate([receivers, sources]) >> 1, return_inverse=True)
+        receiver, source = place[: len(receivers)], place[len(receivers) :]
+        middle = tree.points[tree.corners[nodes]].mean(axis=1).astype(np.float32)
+        area = tree.areas(nodes).astype(np.float32)
+        normal = self.surfaces.normals[tree.triangle[nodes]].astype(np.float32)
         toward = middle[source] - middle[receiver]
         square = np.einsum("px,px->p", toward, toward)
         cosines = np.einsum("px,px->p", toward, normal[receiver]) * np.einsum("px,px->p", toward, normal[source])
@@ -356,10 +369,12 @@ class Transport:
             parts.append(all_shares(table))
         return joined(parts)
 
-    def shares_to(self, wanted: NDArray[np.bool_]) -> Shares:
-        """Form factors to the elements marked in `wanted` (2 * nodes,) only, which costs less."""
-        wanted = np.append(wanted, [False, False])
-        return joined([shares_to(table, wanted) for table in self.tables])
+    def shares_to(self, wanted: NDArray[np.bool_], first_row: int = 0, last_row: int | None = None) -> Shares:
+        """Form factors from some rows of ordinary length to the elements marked in `wanted` (2 * nodes,).
+
+        It costs less than `shares`, and is for the time before any row is lengthened.
+        """
+        return shares_to(self.tables[0].taken(slice(first_row, last_row)), np.append(wanted, [False, False]))
 
     def buried_share(self) -> Floats:
         """Share of each element's rays that started inside a solid, (2 * nodes,); 0 for elements without a row."""

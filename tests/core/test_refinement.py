@@ -114,6 +114,14 @@ def test_only_new_receivers_are_traced(room):
     assert sum(entry.new_rows for entry in rounds.rounds) == len(transport.traced)
 
 
+def test_few_fragments_are_traced_that_are_split_afterwards(room):
+    # What a fragment sees is the mean of what its parts see, so the rays of the whole name most of the next splits.
+    # Tracing each round's fragments took 1.33 times the rows that are left in the end.
+    transport, rounds = room
+    assert any(entry.split and not entry.new_rows for entry in rounds.rounds)
+    assert len(transport.traced) < 1.25 * transport.row_count()
+
+
 def test_later_rounds_trace_fewer_rows_than_there_are_fragments(room):
     _, rounds = room
     assert len(rounds.rounds) > 2
