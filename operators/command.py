@@ -144,6 +144,9 @@ def _run(options: argparse.Namespace) -> None:
     if problem is not None:
         raise CommandError(problem)
     context = bpy.context
+    if context.mode != "OBJECT":
+        # A file remembers the mode that it was saved in, and there is nobody here to leave it.
+        bpy.ops.object.mode_set(mode="OBJECT")
     settings = _settings(options, context.scene)
     objects = _objects(options.object, context)
     output, report_path = _paths(options)

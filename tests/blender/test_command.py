@@ -56,6 +56,16 @@ def test_all_meshes_that_render_are_baked_into_another_file(room, capsys):
 
 
 @pytest.mark.usefixtures("quick_bake")
+@pytest.mark.parametrize("mode", ["EDIT", "SCULPT", "VERTEX_PAINT"])
+def test_a_file_that_was_saved_in_another_mode_is_baked(room, mode):
+    bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
+    bpy.ops.object.mode_set(mode=mode)
+    bpy.ops.wm.save_mainfile()
+    assert main(["--output", "baked.blend"], str(room)) == 0
+    assert "Cube Radiosity" in opened("baked.blend")
+
+
+@pytest.mark.usefixtures("quick_bake")
 def test_only_the_objects_asked_for_are_baked(room):
     assert main(["--output", "baked.blend", "--object", "Cube", "--object", "Floor"]) == 0
     assert {name for name in opened("baked.blend").keys() if "Radiosity" in name} == {  # noqa: SIM118
