@@ -15,7 +15,7 @@ from . import refinement
 from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
-from .cutting import cut_receivers, find_cuts
+from .cutting import CutEdges, cut_receivers, edges_to_outlines, find_cuts
 from .detail import FaceSizes, light_up, light_up_in_detail
 from .direct import all_emitters
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
@@ -218,7 +218,13 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
-        edges = find_cuts(shown.faces, shown.places, shown.gathered.hidden, is_hidden)
+        hidden, touching = shown.gathered.hidden, shown.gathered.touching
+        edges = CutEdges.joined(
+            [
+                find_cuts(shown.faces, shown.places, hidden, is_hidden),
+                edges_to_outlines(shown.faces, shown.places, hidden, touching),
+            ]
+        )
         cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
 
     clock.start("Reconstructing", 0.98, 1.0)

@@ -10,7 +10,7 @@ and the two pieces take the light of their own side.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,8 @@ class CutEdges:
         Where it is cut: there, unless that is too close to an end.
     border : (k,) bool
         Whether the surface ends at the edge: light is gathered beside it, off the plane of the next wall.
+    whole : (k,) bool
+        Edges that end on the outline and are not cut: both numbers are 1.
     """
 
     start: Ints
@@ -74,6 +76,16 @@ class CutEdges:
     change: Floats
     share: Floats
     border: NDArray[np.bool_]
+    whole: NDArray[np.bool_]
+
+    def taken(self, which: NDArray[np.bool_] | Ints) -> CutEdges:
+        """Some of the edges."""
+        return CutEdges(*(getattr(self, field.name)[which] for field in fields(CutEdges)))
+
+    @staticmethod
+    def joined(parts: list[CutEdges]) -> CutEdges:
+        """All edges of several lists."""
+        return CutEdges(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(CutEdges)))
 
 
 IsHidden = Callable[[Receivers], NDArray[np.bool_]]
@@ -102,38 +114,69 @@ def find_cuts(
     among : (f,) bool or None
         Faces whose edges are searched; None for all.
     """
-    count = len(faces.triangle)
-    receiver = places.of_corner[:count].ravel()
-    following = np.roll(places.of_corner[:count], -1, axis=1).ravel()
-    point, next_point = faces.corners.ravel(), np.roll(faces.corners, -1, axis=1).ravel()
-    wanted = hidden[receiver] != hidden[following]
-    broken = np.flatnonzero(wanted if among is None else wanted & np.repeat(among, 3))
-    turned = hidden[receiver[broken]]
-    pairs = np.stack(
-        [
-            np.where(turned, next_point[broken], point[broken]),
-            np.where(turned, point[broken], next_point[broken]),
-            np.where(turned, following[broken], receiver[broken]),
-            np.where(turned, receiver[broken], following[broken]),
-        ],
-        axis=1,
-    )
-    edges, faces_beside = np.unique(pairs, axis=0, return_counts=True)
-    (start, end, seen, unseen), border = edges.T, faces_beside == 1
+    (start, end, seen, unseen), border = _edges_from_to(faces, places, ~hidden, hidden, among)
     count = len(start)
     low, width = np.zeros(count), 1.0
     inner = np.arange(1, SECTIONS) / SECTIONS
     for _ in range(searches if count else 0):
         share = (low[:, None] + width * inner).ravel()
         each = np.repeat(np.arange(count), SECTIONS - 1)
-        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share, border[each])
+        no = np.zeros(len(each), dtype=bool)
+        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share, border[each], no)
         inside = is_hidden(_along(faces, places, tried, share)).reshape(count, SECTIONS - 1)
         # The first section whose end is hidden; the last one's end is known to be.
         first = np.where(inside.any(axis=1), inside.argmax(axis=1), SECTIONS - 1)
         low, width = low + first * width / SECTIONS, width / SECTIONS
     high = low + width
     change = (low + high) / 2.0
-    return CutEdges(start, end, seen, unseen, change, np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE), border)
+    share = np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE)
+    return CutEdges(start, end, seen, unseen, change, share, border, np.zeros(count, dtype=bool))
+
+
+def edges_to_outlines(
+    faces: Faces, places: Receivers, hidden: NDArray[np.bool_], touching: NDArray[np.bool_]
+) -> CutEdges:
+    """Edges of the faces' fronts that end in a vertex on an outline.
+
+    Parameters
+    ----------
+    places : Receivers
+        `of_corner` begins with the fronts of all faces, in order.
+    hidden, touching : (n,) bool
+        Of the receivers.
+    """
+    (start, end, seen, at), border = _edges_from_to(faces, places, ~hidden & ~touching, touching)
+    ones = np.ones(len(start))
+    return CutEdges(start, end, seen, at, ones, ones, border, ones.astype(bool))
+
+
+def _edges_from_to(
+    faces: Faces,
+    places: Receivers,
+    start: NDArray[np.bool_],
+    end: NDArray[np.bool_],
+    among: NDArray[np.bool_] | None = None,
+) -> tuple[Ints, NDArray[np.bool_]]:
+    """Edges of the fronts of faces from some receivers (n,) to others: points, receivers, (4, k), and border."""
+    count = len(faces.triangle)
+    receiver = places.of_corner[:count].ravel()
+    following = np.roll(places.of_corner[:count], -1, axis=1).ravel()
+    point, next_point = faces.corners.ravel(), np.roll(faces.corners, -1, axis=1).ravel()
+    turned = start[following] & end[receiver]
+    wanted = turned | (start[receiver] & end[following])
+    found = np.flatnonzero(wanted if among is None else wanted & np.repeat(among, 3))
+    turned = turned[found]
+    pairs = np.stack(
+        [
+            np.where(turned, next_point[found], point[found]),
+            np.where(turned, point[found], next_point[found]),
+            np.where(turned, following[found], receiver[found]),
+            np.where(turned, receiver[found], following[found]),
+        ],
+        axis=1,
+    )
+    edges, faces_beside = np.unique(pairs, axis=0, return_counts=True)
+    return edges.T, faces_beside == 1
 
 
 def crooked_faces(
@@ -218,6 +261,62 @@ def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Rece
 def drawn_to_cut(at_corner: Floats, before_cut: Floats) -> Floats:
     """Light at cuts, (k, 3), from that at their seen ends and at `BEFORE_CUT` of the way."""
     return np.maximum(at_corner + (before_cut - at_corner) / BEFORE_CUT, 0.0)
+
+
+def values_on_outlines(
+    of_corner: Ints, edges: CutEdges, drawn: Floats, sound: NDArray[np.bool_]
+) -> tuple[Ints, Floats]:
+    """Light at the corners of faces that lie on an outline: that of the side of it that the face is on.
+
+    What was gathered right there is a contact shadow, or the light of both sides. Faces around a vertex that share an
+    edge to it, other than along the outline, are on one side; the light drawn along these edges is theirs.
+
+    Parameters
+    ----------
+    of_corner : (f, 3) int
+        Receivers of the corners of the faces' fronts.
+    edges : CutEdges
+        That end on outlines.
+    drawn : (k, 3) float
+        Light at their ends, drawn in a straight line.
+    sound : (k,) bool
+        Edges nothing hides on the way.
+
+    Returns
+    -------
+    corner : (c,) int
+        Numbers of the corners, 3 for each face.
+    value : (c, 3) float
+    """
+    chosen = np.flatnonzero(sound)
+    key = (edges.seen[chosen] << 32) | edges.hidden[chosen]
+    order = np.argsort(key, kind="stable")
+    key, chosen = key[order], chosen[order]
+    corners, of_edge = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    for step in (1, 2) if len(key) else ():
+        wanted = ((np.roll(of_corner, -step, axis=1) << 32) | of_corner).ravel()
+        place = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
+        corner = np.flatnonzero(key[place] == wanted)
+        corners.append(corner)
+        of_edge.append(place[corner])
+    corner, edge = np.concatenate(corners), np.concatenate(of_edge)
+    # The lowest corner that faces are linked with stands for their side.
+    side = np.arange(of_corner.size)
+    while True:
+        lowest = np.full(len(key), of_corner.size)
+        np.minimum.at(lowest, edge, side[corner])
+        linked = side.copy()
+        np.minimum.at(linked, corner, lowest[edge])
+        if np.array_equal(linked, side):
+            break
+        side = linked
+    count = np.bincount(side[corner], minlength=of_corner.size)
+    own = np.unique(corner)
+    value = np.empty((len(own), 3))
+    for channel in range(3):
+        summed = np.bincount(side[corner], weights=drawn[chosen[edge], channel], minlength=of_corner.size)
+        value[:, channel] = summed[side[own]] / count[side[own]]
+    return own, value
 
 
 def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Receivers:

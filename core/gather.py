@@ -19,6 +19,7 @@ from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP
 from .sampling import Singles, frames, hemisphere_lattice
 from .scene import Floats, Ints
+from .surfaces import HAIR
 from .transport import Transport
 from .visibility import OFFSET, Hits
 from .workers import Workers
@@ -39,6 +40,13 @@ MORE_RECEIVERS = 8
 SMALLER_FOR_CUTS = 8.0
 """Times that faces may be smaller than others where an outline crosses them. What covers a place must not depend on it:
 at the rim of a lamp a millimetre under a ceiling, the light in the gap would show there alone."""
+
+TOUCHING = 1e-3
+"""Share of the size of the smallest face within which rays end where something stands on a place's very edge, and"""
+
+LEAST_TOUCHING_SHARE = 0.15
+"""share of the rays of a place that end there: at the foot of a wall half of them do, at that of a pillar's corner a
+quarter."""
 
 FLAT = 1e-5
 """Difference between the shading normal and the surface's own below which no ray starts under the surface."""
@@ -88,6 +96,8 @@ class Gathered:
         Standard error of its luminance, from two halves of the rays.
     hidden : (n,) bool
         Receivers that nothing but what hides them can see: inside a solid, or covered so closely.
+    touching : (n,) bool
+        Receivers on the outline of what stands there: their light is that of neither side.
     places : (n, r) int32
         What the rays met, to look it up again; r is 0 where that is not kept.
     """
@@ -97,13 +107,15 @@ class Gathered:
     direct_irradiance: Floats
     noise: Floats
     hidden: NDArray[np.bool_]
+    touching: NDArray[np.bool_]
     places: NDArray[np.int32]
 
     @staticmethod
     def none(rays: int) -> Gathered:
         """At no receiver."""
         nothing, unseen = np.zeros((0, 3)), np.zeros(0, dtype=bool)
-        return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, np.zeros((0, rays), np.int32))
+        places = np.zeros((0, rays), np.int32)
+        return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, unseen, places)
 
     def taken(self, which: Ints) -> Gathered:
         """At some of the receivers, each at most once."""
@@ -121,6 +133,7 @@ class Gathered:
             taken_of_two(self.direct_irradiance, others.direct_irradiance, which),
             taken_of_two(self.noise, others.noise, which),
             taken_of_two(self.hidden, others.hidden, which),
+            taken_of_two(self.touching, others.touching, which),
             taken_of_two(self.places[:, :kept], others.places[:, :kept], which),
         )
 
@@ -139,6 +152,7 @@ class Gathered:
             merged(self.direct_irradiance, more.direct_irradiance),
             merged(self.noise, more.noise),
             merged(self.hidden, more.hidden),
+            merged(self.touching, more.touching),
             merged(self.places[:, :kept], more.places[:, :kept]),
         )
 
@@ -169,7 +183,7 @@ def gather(
     pattern = hemisphere_lattice(counts.hemisphere, transport.seed + 101)
     kept = np.empty((total, counts.hemisphere if total * counts.hemisphere <= most_kept else 0), dtype=np.int32)
 
-    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
         part = slice(first, last)
         found, below = _looked(transport, receivers, part, pattern)
         places = cells.places(found)
@@ -179,14 +193,14 @@ def gather(
         distance = found.distance.reshape(places.shape)
         hidden = _covered(transport, receivers.sizes[part], finest, distance) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
-        return means, noise, hidden
+        return means, noise, hidden, _touching(transport, receivers.inward[part], finest, distance) & ~hidden
 
     parts = transport.rays.workers.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
-    hidden = np.concatenate([p[2] for p in parts])
+    hidden, touching = (np.concatenate([p[k] for p in parts]) for k in (2, 3))
     direct = _direct(transport, emitters, receivers, counts, report)
     irradiance = direct.irradiance(emitters.strengths)
-    return Gathered(means + irradiance, direct, irradiance, noise, hidden, kept)
+    return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, kept)
 
 
 def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int) -> GatherRays:
@@ -282,6 +296,14 @@ def _covered(transport: Transport, sizes: Floats, finest: float, distance: Singl
     return result
 
 
+def _touching(transport: Transport, inward: Floats, finest: float, distance: Singles) -> NDArray[np.bool_]:
+    # Solids are smaller by a hair for rays.
+    reach = np.float32(max(TOUCHING * transport.rays.scale * finest, 10.0 * HAIR))
+    # On the border of its own surface a vertex gathers aside, and meets what is beside it from there.
+    result: NDArray[np.bool_] = ((distance < reach).mean(axis=1) > LEAST_TOUCHING_SHARE) & ~inward.any(axis=1)
+    return result
+
+
 def _direct(
     transport: Transport,
     emitters: Emitters,
@@ -329,7 +351,8 @@ def corner_values(gathered: Gathered, of_corner: Ints) -> Floats:
     """Irradiance at face corners, (f, 3, 3), without the dark or bright rim that hidden vertices would draw.
 
     A face that is hidden at some corners and seen at others shows the seen ones' light to its end: at a hidden corner
-    it takes the mean of what such faces show at their other corners. Faces hidden altogether keep what was gathered.
+    it takes the mean of what such faces show at their other corners, at a corner on an outline what it shows itself.
+    Faces hidden altogether keep what was gathered.
 
     Parameters
     ----------
@@ -337,12 +360,16 @@ def corner_values(gathered: Gathered, of_corner: Ints) -> Floats:
         Receivers of each face's corners.
     """
     values = gathered.irradiance[of_corner]
-    hidden = gathered.hidden[of_corner]
-    mixed = np.flatnonzero(hidden.any(axis=1) & ~hidden.all(axis=1))
-    unseen, corners = hidden[mixed], of_corner[mixed]
-    shown = np.einsum("fk,fkc->fc", ~unseen, values[mixed]) / (~unseen).sum(axis=1)[:, None]
-    face, corner = np.nonzero(unseen)
-    target, size = corners[face, corner], len(gathered.hidden)
+    hidden, touching = gathered.hidden[of_corner], gathered.touching[of_corner]
+    whole = ~hidden & ~touching
+    # Where no corner is off the outlines, those on them are the best there is.
+    seen = np.where(whole.any(axis=1)[:, None], whole, ~hidden)
+    mixed = np.flatnonzero(seen.any(axis=1) & ~seen.all(axis=1))
+    shown = np.einsum("fk,fkc->fc", seen[mixed], values[mixed]) / seen[mixed].sum(axis=1)[:, None]
+    face, corner = np.nonzero(touching[mixed] & ~seen[mixed])
+    values[mixed[face], corner] = shown[face]
+    face, corner = np.nonzero(hidden[mixed])
+    target, size = of_corner[mixed[face], corner], len(gathered.hidden)
     count = np.maximum(np.bincount(target, minlength=size), 1)
     for channel in range(values.shape[2]):
         mean = np.bincount(target, weights=shown[face, channel], minlength=size) / count

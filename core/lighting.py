@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .balance import Balance, check_solved, energy, left_emission, seen_radiance, unreflected_light
 from .cells import Cells, Radiance
 from .clock import Clock
-from .cutting import CutEdges, cut_faces, drawn_to_cut
+from .cutting import CutEdges, cut_faces, drawn_to_cut, values_on_outlines
 from .direct import Emitters
 from .direct_light import DirectLight
 from .errors import NoLightError
@@ -232,12 +232,18 @@ def _cut(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]:
     """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
     if cuts is None:
         return shown.faces, shown.face, shown.corner_irradiance()
-    count, gathered = len(shown.faces.triangle), shown.gathered
+    count, gathered, edges = len(shown.faces.triangle), shown.gathered, cuts.edges
     fronts = gathered.irradiance[shown.places.of_corner[:count]]
+    seen = drawn_to_cut(gathered.irradiance[edges.seen], cuts.seen.irradiance)
+    whole = np.flatnonzero(edges.whole)
+    corner, light = values_on_outlines(
+        shown.places.of_corner[:count], edges.taken(whole), seen[whole], ~cuts.seen.hidden[whole]
+    )
+    fronts.reshape(-1, 3)[corner] = light
     values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
-    seen = drawn_to_cut(gathered.irradiance[cuts.edges.seen], cuts.seen.irradiance)
-    sides = seen, cuts.hidden.irradiance
-    return cut_faces(shown.faces, shown.face, shown.places, gathered.hidden, cuts.edges, values, *sides)
+    cut = np.flatnonzero(~edges.whole)
+    sides = seen[cut], cuts.hidden.irradiance[cut]
+    return cut_faces(shown.faces, shown.face, shown.places, gathered.hidden, edges.taken(cut), values, *sides)
 
 
 def _solution_warnings(solution: Solution) -> list[str]:

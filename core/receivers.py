@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .geometry import largest_edges, lengths, normalized, side_normals
 from .scene import Floats, Ints
@@ -19,8 +20,8 @@ NORMAL_CELLS = 1024
 the two sides of a hard edge do not."""
 
 BORDER = 0.05
-"""A vertex lies inside its surface when the mean way to the middles of its faces is less than this share of their mean
-distance; on a straight border of even faces it is about 0.5, and still 0.1 where two slender ones meet."""
+"""A vertex surely lies inside its surface when the mean way to the middles of its faces is less than this share of
+their mean distance; on a straight border of even faces it is about 0.5, and still 0.1 where two slender ones meet."""
 
 INWARD = 0.02
 """Share of the way from a vertex towards the middle of its faces at which light is gathered: a vertex on the border of
@@ -107,6 +108,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     at = points[corners]
     toward = (((at[:, 0] + at[:, 1] + at[:, 2]) / 3.0)[:, None] - at).reshape(-1, 3)
     inward = _into_a_face(toward, mean(toward), group, count)
+    inward[~_on_border(group.reshape(-1, 3), inward.any(axis=1))] = 0.0
     size = largest_edges(points, corners)
     return Receivers(
         position + INWARD * inward,
@@ -117,6 +119,19 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         group.reshape(-1, 3),
     )
+
+
+def _on_border(of_corner: Ints, candidates: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which candidates (n,) end an edge that one face alone has: uneven faces may surround a vertex, too."""
+    following = np.roll(of_corner, -1, axis=1)
+    both = candidates[of_corner] & candidates[following]
+    key = (np.minimum(of_corner, following)[both] << 32) | np.maximum(of_corner, following)[both]
+    edges, faces_beside = np.unique(key, return_counts=True)
+    alone = edges[faces_beside == 1]
+    result = np.zeros(len(candidates), dtype=bool)
+    result[alone >> 32] = True
+    result[alone & 0xFFFFFFFF] = True
+    return result
 
 
 def _codes(places: Ints, shading: Floats) -> Ints:

@@ -9,11 +9,20 @@ under the block receives nothing.
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.cutting import LEAST_PIECE, SEARCHES, SECTIONS, CutEdges, cut_faces, find_cuts
-from radiosity_bake.core.receivers import Receivers
-from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.cutting import (
+    LEAST_PIECE,
+    SEARCHES,
+    SECTIONS,
+    CutEdges,
+    cut_faces,
+    find_cuts,
+    values_on_outlines,
+)
+from radiosity_bake.core.receivers import Receivers, receivers
+from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.subdivision import Faces
+from radiosity_bake.core.surfaces import join
 
 from tests.core.building import areas, block, crosses, t_junctions
 from tests.scenes import exact, oracle
@@ -137,6 +146,52 @@ def test_no_new_vertex_makes_a_sliver_along_an_edge(foot):
     assert edges.min() > 0.01 * N / 4
 
 
+@pytest.mark.parametrize("method", ["UNIFORM", "ADAPTIVE"])
+def test_vertices_on_the_outline_of_a_low_block_show_the_light_beside_it(method):
+    # The floor's vertices fall on the block's edges, where half of all rays end on its sides.
+    floor = exact.rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), reflectance=0.0)
+    low = block("block", (-0.5, -0.5, 0.0), (0.5, 0.5, 0.01), reflectance=0.0)
+    settings = BakeSettings(quality="DRAFT", minimum_size=0.1, method=method)
+    mesh = bake(Scene((floor, low), np.ones(3)), settings).meshes[0]
+    corners = mesh.vertices[mesh.triangles]
+    off = np.abs(corners[..., :2]).max(axis=2)
+    outside = corners[..., :2].mean(axis=1)
+    outside = np.abs(outside).max(axis=1) > 0.5
+    on = (np.abs(off - 0.5) < 1e-9) & outside[:, None]
+    assert on.sum() > 20
+    # A centimetre off it takes 0.2 of the sky, ten centimetres off 0.01; the light is drawn on from at least 0.75 of a
+    # face's width.
+    assert mesh.irradiance[on].min() > 0.8
+    inside = np.abs(corners[..., :2]).max(axis=(1, 2)) < 0.5 - 1e-9
+    assert mesh.irradiance[inside].max() == 0.0
+
+
+def test_light_on_an_outline_stays_on_its_side():
+    # Vertices 0 and 1 lie on a thin wall, 2 in the bright room and 3 in the dark one.
+    of_corner = np.array([[0, 1, 2], [1, 0, 3]])
+    seen, end = np.array([2, 2, 3, 3]), np.array([0, 1, 0, 1])
+    ones, yes = np.ones(4), np.ones(4, dtype=bool)
+    edges = CutEdges(seen, end, seen, end, ones, ones, yes, yes)
+    light = np.array([1.0, 1.0, 0.0, 0.0])[:, None].repeat(3, axis=1)
+    corner, value = values_on_outlines(of_corner, edges, light, yes)
+    assert corner.tolist() == [0, 1, 3, 4]
+    assert value[:, 0].tolist() == [1.0, 1.0, 0.0, 0.0]
+    # An edge that passes under something else tells nothing.
+    corner, value = values_on_outlines(of_corner, edges, light, np.array([True, True, False, False]))
+    assert corner.tolist() == [0, 1]
+
+
+def test_a_vertex_that_uneven_faces_surround_gathers_where_it_is():
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0.1, 0.1, 0], [0, 1, 0]])
+    triangles = np.array([[0, 1, 2], [1, 3, 2], [3, 0, 2]])
+    surfaces = join(Scene((surface_mesh("floor", points, triangles),), np.ones(3)))
+    number = np.arange(4)
+    faces = Faces(points, number, 0 * number, triangles, np.arange(3), np.tile(np.eye(3), (3, 1, 1)), np.arange(3))
+    places = receivers(surfaces, faces, np.arange(3), np.zeros(3, dtype=np.int64))
+    moved = places.inward[places.of_corner[0]].any(axis=1)
+    assert moved.tolist() == [True, True, False]
+
+
 def test_a_block_in_the_air_cuts_nothing():
     floor = exact.rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), reflectance=0.0)
     solid = block("block", (*LOW, 0.2), (*HIGH, 0.5), reflectance=0.0, turned=TURNED)
@@ -173,7 +228,8 @@ def test_beyond_two_cuts_is_the_side_of_the_two_other_corners():
     places = Receivers(at, at, at, np.arange(6), at, np.ones(6), of_corner)
     start, end, seen, unseen = np.array([[0, 1, 0, 1], [0, 2, 0, 2], [2, 1, 3, 4], [2, 3, 3, 5]]).T
     half = np.full(4, 0.5)
-    cuts = CutEdges(start, end, seen, unseen, half, half, np.zeros(4, dtype=bool))
+    no = np.zeros(4, dtype=bool)
+    cuts = CutEdges(start, end, seen, unseen, half, half, no, no)
     bright, dark = np.ones((4, 3)), np.zeros((4, 3))
     values = np.where(hidden[of_corner], 0.0, 1.0)[..., None].repeat(3, axis=2)
     cut, face, light = cut_faces(faces, np.arange(2), places, hidden, cuts, values, bright, dark)
