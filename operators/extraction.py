@@ -257,6 +257,8 @@ class _Reader:
         self._matrices: dict[bpy.types.Object, Floats] = {}
         self._unbaked_instances: dict[str, None] = {}
         self._instanced_lamps: dict[str, None] = {}
+        self._shown_elsewhere: dict[tuple[str, str], None] = {}
+        self._hairy: dict[str, None] = {}
         self._unreceiving: dict[tuple[str, str], None] = {}
         self.shown: set[bpy.types.Object] = set()
 
@@ -277,6 +279,15 @@ class _Reader:
         if self._left_out:
             names = _names(self._left_out, most=None)
             sentences.append(f"{names} left out: only objects that render as meshes take part")
+        if self._hairy:
+            sentences.append(
+                f"The hair of {_names(self._hairy, most=None)} was left out: only what renders as meshes takes part"
+            )
+        sentences += [
+            f'The instances of "{name}" that "{owner}" makes will show the light of "{name}" itself; '
+            f'bake "{owner}", too, with Refined Mesh'
+            for name, owner in self._shown_elsewhere
+        ]
         sentences += [
             f'The instances that "{name}" makes have no mesh of their own and were not baked; Refined Mesh bakes them'
             for name in self._unbaked_instances
@@ -300,6 +311,8 @@ class _Reader:
             original = obj.original
             if obj.type in _UNSUPPORTED:
                 self._left_out[original.name] = None
+            if _has_hair(original):
+                self._hairy[original.name] = None
             parent = instance.parent.original if instance.is_instance else None
             order = (
                 original.name_full,
@@ -307,6 +320,8 @@ class _Reader:
                 tuple(instance.persistent_id) if parent else (),
             )
             matrix = np.array(instance.matrix_world, dtype=np.float64)
+            if parent is not None and self._shows_what_is_baked(original, parent):
+                self._shown_elsewhere[(original.name, parent.name)] = None
             role = role_of([original] if parent in (None, original) else [original, parent])
             owner = self._owner(instance, matrix, role)
             if obj.type == "LIGHT":
@@ -320,6 +335,16 @@ class _Reader:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
                 yield _Entry(order, original, owner, role, local, _slot_materials(obj, local), matrix, layers)
         self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
+
+    def _shows_what_is_baked(self, original: bpy.types.Object, parent: bpy.types.Object) -> bool:
+        """Return whether an instance that `parent` makes of `original` will show the colours that `original` gets.
+
+        Colours in place are on the mesh that is instanced. A refined mesh is in the collections of its original, while
+        objects that are instanced one by one stay the originals.
+        """
+        if original not in self._wanted or parent is original or parent in self._wanted:
+            return False
+        return self._output == "ORIGINAL" or parent.instance_type == "COLLECTION"
 
     def _owner(
         self, instance: bpy.types.DepsgraphObjectInstance, matrix: Floats, role: Role
@@ -426,6 +451,13 @@ class _Reader:
         reflectance = np.array([surface.reflectance for surface in surfaces])
         emission = np.array([surface.emission for surface in surfaces])
         return reflectance[slot_of_triangle], emission[slot_of_triangle]
+
+
+def _has_hair(obj: bpy.types.Object) -> bool:
+    """Return whether particles of `obj` render as strands."""
+    return any(
+        system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in obj.particle_systems
+    )
 
 
 def _has_corners_of(mesh: bpy.types.Mesh, local: LocalMesh) -> bool:

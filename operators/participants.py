@@ -112,8 +112,8 @@ def _show_objects(journal: Journal, participants: Participants) -> None:
     for obj in participants.everything():
         if obj.hide_viewport:
             journal.set(obj, "hide_viewport", False)
-        if not obj.show_instancer_for_viewport and obj.show_instancer_for_render:
-            journal.set(obj, "show_instancer_for_viewport", True)
+        if obj.show_instancer_for_viewport != obj.show_instancer_for_render:
+            journal.set(obj, "show_instancer_for_viewport", obj.show_instancer_for_render)
     for obj in participants.objects:
         if obj.hide_get(view_layer=view_layer):
             journal.on_failure(_hide, obj, view_layer)

@@ -293,6 +293,16 @@ def test_vertex_instances_take_part_beside_the_object_itself_as_in_cycles():
     assert names.count("Leaf") == 4 + 1
 
 
+@pytest.mark.parametrize("in_render", [True, False])
+def test_an_instancer_is_itself_there_as_it_renders_whatever_the_viewport_shows(in_render):
+    ground, leaf = add_plane("Ground"), add_plane("Leaf")
+    leaf.parent, ground.instance_type = ground, "FACES"
+    ground.show_instancer_for_render, ground.show_instancer_for_viewport = in_render, not in_render
+    names = [mesh.name for mesh in extracted(leaf).scene.meshes]
+    assert names.count("Ground") == in_render and names.count("Leaf") == 2
+    assert ground.show_instancer_for_viewport is not in_render
+
+
 def test_text_curves_and_metaballs_take_part_as_the_meshes_they_render():
     text = bpy.data.curves.new("Text", "FONT")
     text.body = "A"

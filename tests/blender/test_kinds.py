@@ -326,3 +326,42 @@ def test_hair_curves_point_clouds_and_volumes_are_left_out_by_name():
     bake_selected("REFINED")
     (warning,) = report()["warnings"]
     assert '"Volume"' in warning and '"Fur"' in warning and "left out" in warning
+
+
+def test_particle_hair_is_left_out_by_name():
+    ground = add_plane("Ground")
+    ground.modifiers.new("Grass", "PARTICLE_SYSTEM")
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count = "HAIR", 3
+    select_also(ground)
+    bake_selected("REFINED")
+    (warning,) = report()["warnings"]
+    assert 'hair of "Ground" was left out' in warning
+
+
+def test_objects_that_particles_instance_are_baked_with_what_carries_the_particles():
+    ground, leaf = add_plane("Ground"), add_plane("Leaf")
+    ground.modifiers.new("Leaves", "PARTICLE_SYSTEM")
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 5, "OBJECT", leaf
+    select_also(ground)
+    bake_selected("REFINED")
+    output = bpy.data.objects["Ground Radiosity"]
+    assert len(output.data.polygons) == 2 * 2 * (1 + 5) and shows_its_own_place(output)
+    assert len(output.modifiers) == 0 and report()["warnings"] == []
+
+
+@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
+def test_instances_that_would_show_the_light_of_another_place_are_named(output):
+    parts = bpy.data.collections.new("Parts")
+    bpy.context.scene.collection.children.link(parts)
+    cube = add_cube(collection=parts, select=True)
+    instancer = add_instancer(parts)
+    instancer.location.x = 5.0
+    bake_selected(output)
+    (warning,) = report()["warnings"]
+    assert 'instances of "Cube" that "Instancer" makes' in warning
+    if output == "REFINED":
+        select_also(cube, instancer)
+        bake_selected(output)
+        assert report()["warnings"] == []
