@@ -213,7 +213,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             gather_at,
             is_hidden,
         )
-        if shown.gathered.places.shape[1]:
+        if shown.gathered.places.rays:
             of_cells = aside[cover.base_of(cells.element)]
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)

@@ -15,6 +15,7 @@ from .cells import BELOW, Cells, Radiance
 from .direct import LUMINANCE, Emitters, direct_light
 from .direct_light import DirectLight
 from .geometry import order_along_curve
+from .met_places import MetPlaces
 from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP
 from .sampling import Singles, frames, hemisphere_lattice
@@ -98,8 +99,8 @@ class Gathered:
         Receivers that nothing but what hides them can see: inside a solid, or covered so closely.
     touching : (n,) bool
         Receivers on the outline of what stands there: their light is that of neither side.
-    places : (n, r) int32
-        What the rays met, to look it up again; r is 0 where that is not kept.
+    places : MetPlaces
+        What the rays met, to look it up again.
     """
 
     irradiance: Floats
@@ -108,22 +109,22 @@ class Gathered:
     noise: Floats
     hidden: NDArray[np.bool_]
     touching: NDArray[np.bool_]
-    places: NDArray[np.int32]
+    places: MetPlaces
 
     @staticmethod
     def none(rays: int) -> Gathered:
         """At no receiver."""
         nothing, unseen = np.zeros((0, 3)), np.zeros(0, dtype=bool)
-        places = np.zeros((0, rays), np.int32)
+        places = MetPlaces.of(np.zeros((0, rays), np.int32))
         return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, unseen, places)
 
     def taken(self, which: Ints) -> Gathered:
         """At some of the receivers, each at most once."""
-        return self.joined(Gathered.none(self.places.shape[1]), which)
+        return self.joined(Gathered.none(self.places.rays), which)
 
     def joined(self, others: Gathered, which: Ints) -> Gathered:
         """At some of these receivers and of others, which are counted on from these; each at most once."""
-        kept, own = min(self.places.shape[1], others.places.shape[1]), len(self.noise)
+        own = len(self.noise)
         number = np.full(own + len(others.noise), -1, dtype=np.int64)
         number[which] = np.arange(len(which))
         direct = [self.direct.renumbered(number[:own], len(which)), others.direct.renumbered(number[own:], len(which))]
@@ -134,12 +135,11 @@ class Gathered:
             taken_of_two(self.noise, others.noise, which),
             taken_of_two(self.hidden, others.hidden, which),
             taken_of_two(self.touching, others.touching, which),
-            taken_of_two(self.places[:, :kept], others.places[:, :kept], which),
+            self.places.joined(others.places).taken(which),
         )
 
     def with_more(self, taken: Ints, more: Gathered, rows: Ints) -> Gathered:
         """Those of `taken`, of which `rows` are replaced by `more`."""
-        kept = min(self.places.shape[1], more.places.shape[1])
 
         def merged(ours: Any, theirs: Any) -> Any:
             values = ours[taken]
@@ -153,7 +153,7 @@ class Gathered:
             merged(self.noise, more.noise),
             merged(self.hidden, more.hidden),
             merged(self.touching, more.touching),
-            merged(self.places[:, :kept], more.places[:, :kept]),
+            self.places.with_more(taken, more.places, rows),
         )
 
 
@@ -200,7 +200,7 @@ def gather(
     hidden, touching = (np.concatenate([p[k] for p in parts]) for k in (2, 3))
     direct = _direct(transport, emitters, receivers, counts, report)
     irradiance = direct.irradiance(emitters.strengths)
-    return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, kept)
+    return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, MetPlaces.of(kept))
 
 
 def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int) -> GatherRays:
@@ -225,12 +225,12 @@ def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int
 
 def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gathered:
     """The same rays, whose ends are looked up in another `radiance`; none is traced."""
-    count, rays = gathered.places.shape
+    places = gathered.places
 
     def work(first: int, last: int) -> tuple[Floats, Floats, Floats]:
-        return _mean_seen(radiance, gathered.places[first:last])
+        return _mean_seen(radiance, places.between(first, last))
 
-    parts = workers.map(work, count, rays)
+    parts = workers.map(work, len(places), places.rays)
     if not parts:
         return gathered
     means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from .cells import Cells
 from .direct import LUMINANCE
 from .lit import Lit
+from .met_places import MetPlaces
 from .patches import PatchTree
 from .sampling import Singles
 from .scene import Floats
@@ -37,21 +38,21 @@ class PlacesOnFaces:
     ----------
     tree : PatchTree
         Whose leaves the shown faces lie in: a further subdivision of the one that `cells` were made of.
-    met : (n, r) int32
+    met : MetPlaces
         What rays met: other places need no radiance.
     aside : (places,) bool
         Places that say nothing of the power that the vertices' light should have: on elements that are covered or
         inside a solid in part, whose radiosity is that of the rest.
     """
 
-    def __init__(self, cells: Cells, tree: PatchTree, met: NDArray[np.int32], aside: NDArray[np.bool_]) -> None:
+    def __init__(self, cells: Cells, tree: PatchTree, met: MetPlaces, aside: NDArray[np.bool_]) -> None:
         self.tree, self.copied = tree, cells.copied
         count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
         seen = np.zeros(count, dtype=bool)
         # As indices, places take twice the memory, which is that of all gather rays: some at a time.
         for first in range(0, len(met), ROWS_AT_ONCE):
-            some = met[first : first + ROWS_AT_ONCE]
+            some = met.between(first, first + ROWS_AT_ONCE)
             seen[some[some >= 0]] = True
         seen[cells.copied] |= seen[count - len(cells.copied) :]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)

@@ -83,7 +83,7 @@ def keep(kept: KeptTransport) -> KeptTransport | NotKept:
     """Give back the transport, or say why it cannot be kept: it would take more than the memory limit."""
     limit = kept.story.settings.memory_limit
     gathers = [kept.shown.gathered, *((kept.cuts.seen, kept.cuts.hidden) if kept.cuts else ())]
-    complete = all(len(gathered.places) == 0 or gathered.places.shape[1] > 0 for gathered in gathers)
+    complete = all(len(gathered.places) == 0 or gathered.places.rays > 0 for gathered in gathers)
     if complete and size_of(kept) <= limit * 2**20:
         return kept
     return NotKept(

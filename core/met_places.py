@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the rays of the gather met, kept in the tables that it was found in, however receivers are put together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .scene import Ints
+
+
+@dataclass(frozen=True, eq=False)
+class MetPlaces:
+    """The place that each ray of receivers met.
+
+    It is most of what a bake holds in memory. So no table is copied when receivers are added or left out, and receivers
+    name their rows instead.
+
+    Attributes
+    ----------
+    tables : tuple of (k, rays) int32
+    row : (n,) int
+        Of each receiver, counted through all tables.
+    rays : int
+        Of each receiver; 0 where the places of some are not kept, and there are no tables.
+    """
+
+    tables: tuple[NDArray[np.int32], ...]
+    row: Ints
+    rays: int
+
+    @staticmethod
+    def of(table: NDArray[np.int32]) -> MetPlaces:
+        """The places of receivers (n, rays), row by row."""
+        return MetPlaces((table,), np.arange(len(table)), table.shape[1])
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def joined(self, others: MetPlaces) -> MetPlaces:
+        """Those of these receivers, then those of others."""
+        rays = min(self.rays, others.rays)
+        counted_on = others.row + sum(len(table) for table in self.tables)
+        tables = self.tables + others.tables if rays else ()
+        return MetPlaces(tables, np.concatenate([self.row, counted_on]), rays)
+
+    def taken(self, which: Ints) -> MetPlaces:
+        """Those of some of the receivers."""
+        return MetPlaces(self.tables, self.row[which], self.rays)
+
+    def with_more(self, taken: Ints, more: MetPlaces, rows: Ints) -> MetPlaces:
+        """Those of `taken`, of which `rows` are replaced by `more`."""
+        which = taken.copy()
+        which[rows] = len(self) + np.arange(len(more))
+        return self.joined(more).taken(which)
+
+    def between(self, first: int, last: int) -> NDArray[np.int32]:
+        """Those of the receivers from `first` up to `last`, (last - first, rays)."""
+        row = self.row[first:last]
+        found = np.empty((len(row), self.rays), dtype=np.int32)
+        begin = 0
+        for table in self.tables:
+            here = np.flatnonzero((row >= begin) & (row < begin + len(table)))
+            found[here] = table[row[here] - begin]
+            begin += len(table)
+        return found
