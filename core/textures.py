@@ -23,9 +23,6 @@ POINTS_AT_ONCE = 2**20
 MOST_STEPS = 512
 """Points along the edge of what a mean is taken over, at most."""
 
-LONGEST_FOOTPRINT = 4
-"""Samples along the edge of a cell that is seen as stretched in an image: level of detail follows the shorter way."""
-
 
 def cell_centres(along: int) -> Singles:
     """Barycentric weights of corners 1 and 2 at the centres of cells, (along^2, 2).
@@ -209,18 +206,21 @@ class Image:
         The first has all pixels; the last has one. Row 0 is the lowest, as in texture coordinates.
     extension : str
         What lies outside of 0 to 1: `'REPEAT'`, `'MIRROR'`, `'EXTEND'` (the border goes on) or `'CLIP'` (nothing).
+    closest : bool
+        Whether a pixel has one colour, in place of passing over into the next.
     """
 
     levels: tuple[Singles, ...]
     extension: str = "REPEAT"
+    closest: bool = False
 
 
-def image_of(pixels: Singles, extension: str = "REPEAT") -> Image:
+def image_of(pixels: Singles, extension: str = "REPEAT", closest: bool = False) -> Image:
     """The image of pixels (h, w, c)."""
     levels = [np.ascontiguousarray(pixels, dtype=np.float32)]
     while max(levels[-1].shape[:2]) > 1:
         levels.append(halved(levels[-1]))
-    return Image(tuple(levels), extension)
+    return Image(tuple(levels), extension, closest)
 
 
 def halved(pixels: Singles) -> Singles:
@@ -264,18 +264,20 @@ def sampled(image: Image, uv: Floats, footprint: Floats) -> Floats:
     for k in np.unique(low):
         row = np.flatnonzero(low == k)
         share = (level[row] - k)[:, None]
-        finer = _bilinear(image.levels[k], image.extension, uv[row])
+        finer = _bilinear(image.levels[k], image.extension, uv[row], image.closest and k == 0)
         if share.any():
             finer = finer * (1.0 - share) + share * _bilinear(image.levels[k + 1], image.extension, uv[row])
         result[row] = finer
     return result
 
 
-def _bilinear(pixels: Singles, extension: str, uv: Floats) -> Floats:
+def _bilinear(pixels: Singles, extension: str, uv: Floats, closest: bool = False) -> Floats:
     height, width = pixels.shape[:2]
     x, y = uv[:, 0] * width - 0.5, uv[:, 1] * height - 0.5
     i, j = np.floor(x), np.floor(y)
     s, t = (x - i)[:, None], (y - j)[:, None]
+    if closest:
+        s, t = np.round(s), np.round(t)
     result: Floats = np.zeros((len(uv), pixels.shape[2]))
     for right, above, weight in ((0, 0, (1 - s) * (1 - t)), (1, 0, s * (1 - t)), (0, 1, (1 - s) * t), (1, 1, s * t)):
         column, inside = _within(i + right, width, extension)

@@ -78,6 +78,7 @@ def shown_report(
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
         "profile": profile(seconds, result.report),
         "objects": [obj.name for obj in objects],
+        "evaluated_by_blender": list(extraction.evaluated),
         "warnings": [*extraction.warnings, *result.report.get("warnings", ()), *cautions],
     }
 

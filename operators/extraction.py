@@ -11,11 +11,12 @@ import numpy as np
 
 from ..core.errors import NothingToBakeError
 from ..core.scene import Floats, Lamp, Scene, SurfaceMesh
+from .appearance import Appearance, Colouring
 from .display import is_display
 from .lamps import lamp_of
 from .layers import Layers, joined_layers, layers_of
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
-from .materials import Surface, material_surface, world_radiance
+from .materials import world_radiance
 from .object_settings import Role, role_of
 from .participants import Participants, shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
@@ -34,6 +35,8 @@ class Extraction:
     scene : Scene
     targets : tuple of Target
     warnings : tuple of str
+    evaluated : tuple of str
+        Materials that Blender evaluated, and the nodes that made it.
     scene_uid : int
         `session_uid` of the Blender scene.
     view_layer : str
@@ -43,6 +46,7 @@ class Extraction:
     scene: Scene
     targets: tuple[Target, ...]
     warnings: tuple[str, ...]
+    evaluated: tuple[str, ...]
     scene_uid: int
     view_layer: str
 
@@ -85,6 +89,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
         Scene(tuple(reader.meshes), world, tuple(reader.lamps)),
         targets,
         tuple(warnings),
+        tuple(reader.evaluated()),
         context.scene.session_uid,
         view_layer.name,
     )
@@ -246,8 +251,7 @@ class _Reader:
         self._output = output
         self._local_meshes: dict[int, LocalMesh | None] = {}
         self._layers_of_mesh: dict[int, Layers] = {}
-        self._surfaces: dict[Any, Surface] = {}
-        self._users_of_note: dict[tuple[str, str], dict[str, None]] = {}
+        self._colouring = Colouring()
         self._left_out: dict[str, None] = {}
         self._users_of_lamp_note: dict[str, dict[str, None]] = {}
         self.meshes: list[SurfaceMesh] = []
@@ -265,15 +269,16 @@ class _Reader:
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
         entries = sorted(self._entries(), key=lambda entry: entry.order)
-        for entry in entries:
-            self._add(entry)
+        colours = self._colouring.appearances([(e.original, e.local, e.materials, e.matrix) for e in entries])
+        for entry, appearance in zip(entries, colours, strict=True):
+            self._add(entry, appearance)
         self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
 
     def warnings(self) -> list[str]:
         """Return a sentence for everything that was left out or guessed."""
         sentences = [
             f'Material "{material}" of {_names(users)}: {note}'
-            for (material, note), users in self._users_of_note.items()
+            for (material, note), users in self._colouring.users_of_note.items()
         ]
         sentences += [f"Lamp {_names(users)}: {note}" for note, users in self._users_of_lamp_note.items()]
         if self._left_out:
@@ -301,6 +306,13 @@ class _Reader:
             for name, owner in self._unreceiving
         ]
         return sentences
+
+    def evaluated(self) -> list[str]:
+        """Return a sentence for each material that Blender evaluated."""
+        return [
+            f'Material "{material}" of {_names(users)}: {nodes}'
+            for (material, nodes), users in self._colouring.users_of_evaluated.items()
+        ]
 
     def _entries(self) -> Iterator[_Entry]:
         lamps: list[tuple[Any, Lamp | None]] = []
@@ -333,7 +345,9 @@ class _Reader:
             local = self._local_mesh(obj)
             if local is not None:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
-                yield _Entry(order, original, owner, role, local, _slot_materials(obj, local), matrix, layers)
+                materials = _slot_materials(obj, local)
+                self._colouring.read(obj, local, materials)
+                yield _Entry(order, original, owner, role, local, materials, matrix, layers)
         self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
 
     def _shows_what_is_baked(self, original: bpy.types.Object, parent: bpy.types.Object) -> bool:
@@ -386,16 +400,15 @@ class _Reader:
             obj.to_mesh_clear()
         return self._layers_of_mesh[key]
 
-    def _add(self, entry: _Entry) -> None:
+    def _add(self, entry: _Entry, appearance: Appearance) -> None:
         local, role, matrix = entry.local, entry.role, entry.matrix
         if np.linalg.det(matrix[:3, :3]) < 0.0:
             local = turned_over(local)
-        reflectance, emission = self._optics(entry.original.name, local, entry.materials)
         if role.reflectance is not None:
-            reflectance = np.broadcast_to(role.reflectance, reflectance.shape)
+            appearance = appearance.painted(role.reflectance)
         glow = None
-        if not role.lights and emission.any():
-            emission, glow = np.zeros_like(emission), emission
+        if not role.lights:
+            appearance, glow = appearance.without_light()
         if entry.owner is not None:
             part = Part(len(self.meshes), local, entry.materials, matrix, entry.layers, glow)
             self._parts.setdefault(entry.owner, []).append(part)
@@ -406,8 +419,10 @@ class _Reader:
                 vertices=vertices,
                 triangles=local.triangles,
                 corner_normals=normals,
-                reflectance=reflectance,
-                emission=emission,
+                reflectance=appearance.reflectance,
+                emission=appearance.emission,
+                reflectance_texture=appearance.reflectance_texture,
+                emission_texture=appearance.emission_texture,
                 baked=entry.owner is not None,
                 seen=role.seen,
                 shadow=role.shadow,
@@ -434,23 +449,6 @@ class _Reader:
             layers=joined_layers([part.layers for part in parts], [part.local for part in parts]),
             glow=joined_glow(parts),
         )
-
-    def _optics(self, name: str, local: LocalMesh, materials: tuple[Any, ...]) -> tuple[Floats, Floats]:
-        # Like the renderers: a face whose slot does not exist takes the last one.
-        last = max(len(materials) - 1, 0)
-        slots, slot_of_triangle = np.unique(np.clip(local.slots, 0, last), return_inverse=True)
-        surfaces = []
-        for slot in slots:
-            material = materials[slot] if materials else None
-            surface = self._surfaces.get(material)
-            if surface is None:
-                surface = self._surfaces[material] = material_surface(material)
-            for note in surface.notes:
-                self._users_of_note.setdefault((material.name, note), {})[name] = None
-            surfaces.append(surface)
-        reflectance = np.array([surface.reflectance for surface in surfaces])
-        emission = np.array([surface.emission for surface in surfaces])
-        return reflectance[slot_of_triangle], emission[slot_of_triangle]
 
 
 def _has_hair(obj: bpy.types.Object) -> bool:
@@ -482,7 +480,7 @@ def _slot_materials(obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
         for index, material in enumerate(materials):
             if is_display(material):
                 materials[index] = record.slots[index].material if index < len(record.slots) else None
-    return tuple(materials)
+    return tuple(material and material.original for material in materials)
 
 
 def _names(names: Iterable[str], most: int | None = 3) -> str:

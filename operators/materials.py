@@ -1,15 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a material means for radiosity: one reflectance and one emission, read from the constants of its nodes."""
+"""What a material means for radiosity: its reflectance and emission, read from its nodes.
+
+They are constants, or vary over the mesh as far as they follow from images and colour attributes. What needs any other
+node is named, for Blender to evaluate it.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils import Euler
 from numpy.typing import NDArray
 
+from ..core.textures import sampled
 from .display import is_display
+from .images import UnreadableImageError, read_image
+from .varying import Points, Value, Varying, combined, luminance, varies
 
 Colour = NDArray[np.float64]
 
@@ -42,24 +50,35 @@ class Surface:
 
     Attributes
     ----------
-    reflectance : (3,) float, 0..1
+    reflectance : (3,) float or Varying, 0..1
         Diffuse albedo, linear RGB.
-    emission : (3,) float, W m^-2 sr^-1
+    emission : (3,) float or Varying, W m^-2 sr^-1
         Emitted radiance, linear RGB.
     notes : tuple of str
         What was skipped or guessed, each a clause to follow the material's name and a colon.
+    unread : tuple of str
+        Nodes that only Blender can evaluate, in the words of its Add menu: where there is one, the colours are guesses.
     """
 
-    reflectance: Colour
-    emission: Colour
+    reflectance: Colour | Varying
+    emission: Colour | Varying
     notes: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
+
+    def colours(self) -> tuple[Colour | Varying, Colour | Varying]:
+        """Return both."""
+        return self.reflectance, self.emission
 
 
-def _surface(reflectance: object = 0.0, emission: object = 0.0, notes: Iterable[str] = ()) -> Surface:
-    def colour(value: object) -> Colour:
+def _surface(
+    reflectance: object = 0.0, emission: object = 0.0, notes: Iterable[str] = (), unread: Iterable[str] = ()
+) -> Surface:
+    def colour(value: object) -> Colour | Varying:
+        if isinstance(value, Varying):
+            return value
         return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (3,)))
 
-    return Surface(colour(reflectance), colour(emission), tuple(notes))
+    return Surface(colour(reflectance), colour(emission), tuple(notes), tuple(unread))
 
 
 def uses_nodes(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) -> bool:
@@ -76,12 +95,13 @@ def material_surface(material: bpy.types.Material | None) -> Surface:
         return _surface(GREY, notes=["it shows an earlier bake; plain grey was used instead"])
     if not uses_nodes(material):
         return _surface(np.clip(material.diffuse_color[:3], 0.0, 1.0))
-    shader = _ShaderReader(material.node_tree).surface()
+    shader = _ShaderReader(material.node_tree, with_textures=True).surface()
+    if varies(shader.reflectance):
+        return shader
     reflectance = np.clip(shader.reflectance, 0.0, 1.0)
     if np.any(reflectance != shader.reflectance):
-        return _surface(
-            reflectance, shader.emission, [*shader.notes, "its colour is brighter than white; white was used instead"]
-        )
+        notes = [*shader.notes, "its colour is brighter than white; white was used instead"]
+        return _surface(reflectance, shader.emission, notes, shader.unread)
     return shader
 
 
@@ -119,23 +139,31 @@ def lamp_factor(light: bpy.types.Light) -> tuple[Colour, tuple[str, ...]]:
 
 
 class _ShaderReader:
-    """Follows the links of one node tree, in and out of groups, from its output to constants."""
+    """Follows the links of one node tree, in and out of groups, from its output to constants and textures.
 
-    def __init__(self, tree: bpy.types.NodeTree) -> None:
+    Parameters
+    ----------
+    with_textures : bool
+        Whether colours may vary. If not, whatever is no constant is named in the notes.
+    """
+
+    def __init__(self, tree: bpy.types.NodeTree, with_textures: bool = False) -> None:
         self.tree = tree
+        self.with_textures = with_textures
         self.notes: list[str] = []
+        self.unread: list[str] = []
 
     def surface(self) -> Surface:
         output = self.tree.get_output_node("CYCLES")
         if output is None:
             return _surface()
         reflectance, emission = self._shader(_input(output, "Surface"), ())
-        if np.any(emission < 0.0):
+        if not varies(emission) and np.any(emission < 0.0):
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
-        return _surface(reflectance, emission, dict.fromkeys(self.notes))
+        return _surface(reflectance, emission, dict.fromkeys(self.notes), dict.fromkeys(self.unread))
 
-    def _shader(self, socket, groups) -> tuple[Colour, Colour]:
+    def _shader(self, socket, groups) -> tuple[Value, Value]:
         """Return reflectance and emission of whatever is linked to a shader socket; an open one is black."""
         nothing = np.zeros(3), np.zeros(3)
         output, groups = self._source(socket, groups)
@@ -145,29 +173,35 @@ class _ShaderReader:
         if node.type == "BSDF_PRINCIPLED":
             return self._principled(node, groups)
         if node.type in {"EMISSION", "BACKGROUND"}:
-            return np.zeros(3), self._colour(node, "Color", groups) * self._value(node, "Strength", groups)
+            colour, strength = self._colour(node, "Color", groups), self._value(node, "Strength", groups)
+            return np.zeros(3), combined(np.multiply, colour, strength)
         if node.type == "BSDF_DIFFUSE":
             return self._colour(node, "Color", groups), np.zeros(3)
         if node.type == "MIX_SHADER":
-            share = min(max(self._value(node, "Fac", groups), 0.0), 1.0)
+            share = self._share(node, "Fac", groups)
             first, second = self._shader(node.inputs[1], groups), self._shader(node.inputs[2], groups)
-            return tuple((1.0 - share) * a + share * b for a, b in zip(first, second, strict=True))
+            return tuple(combined(_mixed, share, a, b) for a, b in zip(first, second, strict=True))
         if node.type == "ADD_SHADER":
             first, second = self._shader(node.inputs[0], groups), self._shader(node.inputs[1], groups)
-            return tuple(a + b for a, b in zip(first, second, strict=True))
+            return tuple(combined(np.add, a, b) for a, b in zip(first, second, strict=True))
         return self._unsupported(node, groups)
 
-    def _principled(self, node, groups) -> tuple[Colour, Colour]:
-        diffuse = 1.0 - min(max(self._value(node, "Metallic", groups), 0.0), 1.0)
-        diffuse *= 1.0 - min(max(self._value(node, "Transmission Weight", groups), 0.0), 1.0)
-        reflectance = self._colour(node, "Base Color", groups) * diffuse if diffuse > 0.0 else np.zeros(3)
-        strength = self._value(node, "Emission Strength", groups)
-        emission = self._colour(node, "Emission Color", groups) * strength if strength != 0.0 else np.zeros(3)
-        if self._value(node, "Alpha", groups) < 1.0:
-            self.notes.append("transparency (Alpha) is not supported yet; it counts as opaque")
+    def _principled(self, node, groups) -> tuple[Value, Value]:
+        opaque = self._share(node, "Alpha", groups)
+        rest = [self._share(node, name, groups) for name in ("Metallic", "Transmission Weight")]
+        diffuse = combined(lambda alpha, *shares: alpha * np.prod([1.0 - s for s in shares], axis=0), opaque, *rest)
+        reflectance = np.zeros(3)
+        if varies(diffuse) or diffuse > 0.0:
+            reflectance = combined(np.multiply, self._colour(node, "Base Color", groups), diffuse)
+        strength = combined(np.multiply, self._value(node, "Emission Strength", groups), opaque)
+        emission = np.zeros(3)
+        if varies(strength) or strength != 0.0:
+            emission = combined(np.multiply, self._colour(node, "Emission Color", groups), strength)
+        if varies(opaque) or opaque < 1.0:
+            self.notes.append("it is transparent (Alpha), but lets no light through")
         return reflectance, emission
 
-    def _unsupported(self, node, groups) -> tuple[Colour, Colour]:
+    def _unsupported(self, node, groups) -> tuple[Value, Value]:
         name = _title(node)
         if node.type in _DIFFUSE_LIKE:
             self.notes.append(f"{name} {_DIFFUSE_LIKE[node.type]}; it counts as diffuse")
@@ -175,19 +209,28 @@ class _ShaderReader:
         if node.type in NOT_DIFFUSE:
             self.notes.append(f"{name} reflects no diffuse light; that part counts as black")
             return np.zeros(3), np.zeros(3)
-        self.notes.append(f"{name} is not supported; that part counts as grey")
+        self._leave(name, f"{name} is not supported; that part counts as grey")
         return np.full(3, GREY), np.zeros(3)
 
-    def _colour(self, node, identifier: str, groups) -> Colour:
-        value = self._constant(node, identifier, groups)
-        return np.full(3, value) if isinstance(value, float) else np.array(value[:3], dtype=np.float64)
+    def _leave(self, name: str, note: str) -> None:
+        """Leave a node to Blender, or say what is made of it."""
+        if self.with_textures:
+            self.unread.append(name)
+        else:
+            self.notes.append(note)
 
-    def _value(self, node, identifier: str, groups) -> float:
+    def _colour(self, node, identifier: str, groups) -> Value:
         value = self._constant(node, identifier, groups)
-        return value if isinstance(value, float) else float(np.mean(value[:3]))
+        return np.full(3, value) if isinstance(value, float) else value
 
-    def _constant(self, node, identifier: str, groups) -> float | tuple[float, ...]:
-        """Return the constant that reaches an input; one that varies over the surface counts as its socket's value."""
+    def _value(self, node, identifier: str, groups) -> Value:
+        return combined(_number, self._constant(node, identifier, groups))
+
+    def _share(self, node, identifier: str, groups) -> Value:
+        return combined(lambda value: np.clip(value, 0.0, 1.0), self._value(node, identifier, groups))
+
+    def _constant(self, node, identifier: str, groups) -> Value:
+        """Return what reaches an input; what cannot be read counts as its socket's value."""
         socket = _input(node, identifier)
         output, outer = self._source(socket, groups)
         if output is None:
@@ -195,11 +238,101 @@ class _ShaderReader:
             return _default(outer)
         if output.node.type in {"VALUE", "RGB"}:
             return _default(output)
-        self.notes.append(
-            f"{socket.name} comes from {_title(output.node)}, which is not supported yet; "
-            f"the {'value' if socket.type == 'VALUE' else 'colour'} set on its socket was used instead"
+        if self.with_textures:
+            found = self._texture(output, outer)
+            if found is not None:
+                return found
+        title = _title(output.node)
+        self._leave(
+            title,
+            f"{socket.name} comes from {title}, which is not supported; "
+            f"the {'value' if socket.type == 'VALUE' else 'colour'} set on its socket was used instead",
         )
         return _default(socket)
+
+    def _texture(self, output, groups) -> Value | None:
+        """Return what an output gives that varies over the mesh, or None."""
+        node = output.node
+        if node.type == "TEX_IMAGE":
+            return self._image(node, output, groups)
+        if node.type == "VERTEX_COLOR":
+            return _attribute(node.layer_name, output.identifier)
+        if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and node.attribute_name:
+            return _attribute(node.attribute_name, output.identifier)
+        if node.type == "MIX" and node.data_type in {"RGBA", "FLOAT"}:
+            kind = {"RGBA": "Color", "FLOAT": "Float"}[node.data_type]
+            blend = node.blend_type if node.data_type == "RGBA" else "MIX"
+            names = "Factor_Float", f"A_{kind}", f"B_{kind}"
+            return self._blend(node, blend, names, groups, node.clamp_factor, node.clamp_result)
+        if node.type == "MIX_RGB":
+            return self._blend(node, node.blend_type, ("Fac", "Color1", "Color2"), groups, True, node.use_clamp)
+        return None
+
+    def _blend(self, node, blend: str, names, groups, clamp_factor: bool, clamp_result: bool) -> Value | None:
+        if blend not in _BLENDS:
+            return None
+        factor = self._share(node, names[0], groups) if clamp_factor else self._value(node, names[0], groups)
+        first, second = (self._colour(node, name, groups) for name in names[1:])
+
+        def blended(share, a, b):
+            result = _mixed(share, a, _BLENDS[blend](a, b))
+            return np.clip(result, 0.0, 1.0) if clamp_result else result
+
+        return combined(blended, factor, first, second)
+
+    def _image(self, node, output, groups) -> Value | None:
+        if node.image is None or node.projection != "FLAT":
+            return None
+        where = self._place(node, groups)
+        if where is None:
+            return None
+        alpha = next(socket for socket in node.outputs if socket.identifier == "Alpha")
+        try:
+            image = read_image(node.image, node.extension, node.interpolation == "Closest", alpha.is_linked)
+        except UnreadableImageError:
+            return None
+        height, width = image.levels[0].shape[:2]
+        channels = slice(3, 4) if output.identifier == "Alpha" else slice(0, 3)
+
+        def read(points: Points):
+            uv = where.at(points)[:, :, :2]
+            along, across = (uv[:, 1:] - uv[:, :1]).transpose(1, 0, 2) * (width, height)
+            # A part is half of the parallelogram of these two; in a stretched one the longer way still counts.
+            area = np.sqrt(np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]) / 2.0)
+            longest = np.maximum(np.linalg.norm(along, axis=1), np.linalg.norm(across, axis=1))
+            return sampled(image, uv[:, 0], np.maximum(area, longest / _STRETCHED))[:, channels]
+
+        return Varying(read)
+
+    def _place(self, node, groups) -> Varying | None:
+        """Return the vectors that are linked to a node's input Vector; without a link those of the UV map."""
+        output, groups = self._source(_input(node, "Vector"), groups)
+        if output is None:
+            return _uv_map("")
+        source = output.node
+        if source.type == "UVMAP" and not source.from_instancer:
+            return _uv_map(source.uv_map)
+        if source.type == "TEX_COORD" and output.identifier == "UV" and not source.from_instancer:
+            return _uv_map("")
+        if source.type == "ATTRIBUTE" and source.attribute_type == "GEOMETRY" and output.identifier == "Vector":
+            return _uv_map(source.attribute_name)
+        if source.type == "MAPPING" and source.vector_type in {"POINT", "TEXTURE", "VECTOR"}:
+            return self._mapped(source, groups)
+        return None
+
+    def _mapped(self, node, groups) -> Varying | None:
+        inner = self._place(node, groups)
+        names = ("Rotation", "Scale") if node.vector_type == "VECTOR" else ("Rotation", "Scale", "Location")
+        values = [self._constant(node, name, groups) for name in names]
+        if inner is None or varies(*values):
+            return None
+        turn, scale = np.array(Euler(values[0]).to_matrix()), values[1]
+        offset = values[2] if len(values) > 2 else np.zeros(3)
+        if node.vector_type == "TEXTURE":
+            # As Cycles divides: by 0 gives 0.
+            inverse = np.divide(1.0, scale, out=np.zeros(3), where=scale != 0.0)
+            return Varying(lambda points: ((inner.at(points) - offset) @ turn) * inverse)
+        return Varying(lambda points: (inner.at(points) * scale) @ turn.T + offset)
 
     def _source(self, socket, groups):
         """Return the output socket that feeds `socket`, through reroutes, muted nodes and groups, and where it is.
@@ -242,6 +375,41 @@ def _title(node) -> str:
     return node.node_tree.name if node.type == "GROUP" and node.node_tree else node.bl_label
 
 
-def _default(socket) -> float | tuple[float, ...]:
+def _default(socket) -> Value:
     value = socket.default_value
-    return float(value) if isinstance(value, float | int) else tuple(value)
+    return float(value) if isinstance(value, float | int) else np.array(value[:3], dtype=np.float64)
+
+
+def _number(value):
+    return value if isinstance(value, float) else luminance(value)
+
+
+def _mixed(share, first, second):
+    return (1.0 - share) * first + share * second
+
+
+def _uv_map(name: str) -> Varying:
+    return Varying(lambda points: points.vectors(name or points.attributes.uv, 3))
+
+
+def _attribute(name: str, output: str) -> Value | None:
+    """Return a colour attribute; without a name that of renders."""
+    if output not in {"Color", "Alpha"}:
+        return None
+    channels = slice(3, 4) if output == "Alpha" else slice(0, 3)
+    return Varying(lambda points: points.colours(name or points.attributes.colour)[:, channels])
+
+
+_BLENDS = {
+    "MIX": lambda _, b: b,
+    "MULTIPLY": np.multiply,
+    "ADD": np.add,
+    "SUBTRACT": np.subtract,
+    "DARKEN": np.minimum,
+    "LIGHTEN": np.maximum,
+    "SCREEN": lambda a, b: 1.0 - (1.0 - a) * (1.0 - b),
+}
+"""What a Mix node makes of its second colour where its factor is 1."""
+
+_STRETCHED = 4.0
+"""Times that an image may be stretched until the longer way decides how much of it is averaged."""

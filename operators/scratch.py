@@ -71,7 +71,7 @@ def bake_in(scene: bpy.types.Scene, obj: bpy.types.Object, **options: Any) -> No
     layer = scene.view_layers[0]
     # A selection in the scene too, as Blender asks once the one, once the other.
     for other in layer.objects:
-        other.select_set(other == obj)
+        other.select_set(other == obj, view_layer=layer)
     layer.objects.active = obj
     with bpy.context.temp_override(
         scene=scene,

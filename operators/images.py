@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images as Cycles sees them: in the colours of the scene, and transparent where they are."""
+
+import bpy
+import numpy as np
+from mathutils import Color
+
+from ..core.sampling import Singles
+from ..core.textures import Image, halved, image_of
+
+MOST_PIXELS = 2048
+"""Along an edge: larger images are made smaller, which the cells of a mesh are finer than in no scene."""
+
+_AS_THEY_ARE = {"Non-Color", "Raw", "Generic Data"}
+
+
+class UnreadableImageError(Exception):
+    """An image that Blender has to evaluate itself; the text says what it is."""
+
+
+def read_image(image: bpy.types.Image, extension: str, closest: bool, alpha_used: bool) -> Image:
+    """Return the pixels of an image, linear RGBA in the colours of the scene, as Cycles makes them.
+
+    Parameters
+    ----------
+    extension : str
+        Of the texture node.
+    closest : bool
+        Whether pixels are shown with sharp edges.
+    alpha_used : bool
+        Whether the node's Alpha is linked, too: Cycles multiplies the colour by it otherwise.
+
+    Raises
+    ------
+    UnreadableImageError
+    """
+    if image.source not in {"FILE", "GENERATED"}:
+        raise UnreadableImageError(f'"{image.name}" is a {image.source.lower()}')
+    width, height = image.size
+    if not (width and height and image.channels):
+        raise UnreadableImageError(f'"{image.name}" has no pixels')
+    flat = np.empty(width * height * image.channels, dtype=np.float32)
+    image.pixels.foreach_get(flat)
+    pixels = _with_four_channels(flat.reshape(height, width, image.channels))
+    plain = image.colorspace_settings.is_data or image.colorspace_settings.name in _AS_THEY_ARE
+    if image.alpha_mode == "NONE":
+        pixels[..., 3] = 1.0
+    elif image.alpha_mode != "CHANNEL_PACKED":
+        # Blender has bytes without the alpha in them, and floats with it.
+        if image.is_float and alpha_used and not plain:
+            pixels[..., :3] /= np.where(pixels[..., 3:] == 0.0, 1.0, pixels[..., 3:])
+        elif not image.is_float and (plain or not alpha_used):
+            pixels[..., :3] *= pixels[..., 3:]
+    if not (image.is_float or plain):
+        if image.colorspace_settings.name != "sRGB":
+            raise UnreadableImageError(f'"{image.name}" is in the colour space {image.colorspace_settings.name}')
+        pixels[..., :3] = _from_srgb(pixels[..., :3])
+    while max(pixels.shape[:2]) > MOST_PIXELS:
+        pixels = halved(pixels)
+    return image_of(pixels, extension, closest)
+
+
+def _with_four_channels(pixels: Singles) -> Singles:
+    channels = pixels.shape[2]
+    if channels == 4:
+        return pixels
+    opaque = np.ones((*pixels.shape[:2], 4), dtype=np.float32)
+    opaque[..., :3] = pixels[..., :3] if channels == 3 else pixels[..., :1]
+    if channels == 2:
+        opaque[..., 3] = pixels[..., 1]
+    return opaque
+
+
+def _from_srgb(pixels: Singles) -> Singles:
+    """Return sRGB colours in the scene's own linear space, by Blender's colour management."""
+    grey = np.array([Color((k / 255.0,) * 3).from_srgb_to_scene_linear() for k in range(256)], dtype=np.float64)
+    primaries = np.array([Color(axis).from_srgb_to_scene_linear() for axis in np.eye(3)], dtype=np.float64)
+    linear = np.interp(pixels.reshape(-1), np.arange(256) / 255.0, grey.mean(axis=1)).astype(np.float32)
+    linear = linear.reshape(-1, 3)
+    if not np.allclose(primaries, np.eye(3), atol=1e-4):
+        linear = linear @ primaries.astype(np.float32)
+    return linear.reshape(pixels.shape)
