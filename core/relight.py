@@ -117,7 +117,9 @@ def _arrays(value: object, known: set[int]) -> Iterator[NDArray[Any]]:
 def shape_of(mesh: SurfaceMesh) -> bytes:
     """A number that changes with anything about a mesh but its colours and its name."""
     digest = blake2b(digest_size=16)
-    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, np.array([mesh.baked, mesh.seen, mesh.shadow])):
+    flags = np.array([mesh.baked, mesh.seen, mesh.shadow])
+    clear = np.zeros(0, dtype=bool) if mesh.clear is None or not mesh.clear.any() else mesh.clear
+    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, clear):
         digest.update(repr((array.shape, array.dtype.str)).encode())
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()

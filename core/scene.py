@@ -62,6 +62,8 @@ class SurfaceMesh:
         Whether it hides lamps and emitters.
     reflectance_texture, emission_texture : Texture or None
         Of the triangles over which they vary, in place of what is above.
+    clear : (t,) bool or None
+        Triangles that light goes through as if they were not there.
     """
 
     name: str
@@ -75,6 +77,7 @@ class SurfaceMesh:
     shadow: bool = True
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
+    clear: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, eq=False)

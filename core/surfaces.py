@@ -151,6 +151,8 @@ def join(scene: Scene) -> Surfaces:
     counts = [len(keep) for keep in kept]
     mesh_of_triangle = np.repeat(np.arange(len(counts)), counts)
     flags = np.array([(mesh.baked, mesh.seen, mesh.shadow) for mesh in scene.meshes])[mesh_of_triangle]
+    clear = [np.zeros(len(k), bool) if m.clear is None else m.clear[k] for m, k in zip(scene.meshes, kept, strict=True)]
+    opaque = ~np.concatenate(clear)
     normals = normalized(cross)
     corner_normals = np.concatenate([m.corner_normals[k] for m, k in zip(scene.meshes, kept, strict=True)]).astype(
         float
@@ -168,8 +170,8 @@ def join(scene: Scene) -> Surfaces:
         shell_of_triangle=shell,
         closed=closed,
         baked=flags[:, 0],
-        seen=flags[:, 1],
-        shadow=flags[:, 2],
+        seen=flags[:, 1] & opaque,
+        shadow=flags[:, 2] & opaque,
         extent=extent,
         warnings=tuple(warnings),
         **_colours(scene, kept),

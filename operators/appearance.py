@@ -38,12 +38,14 @@ class Appearance:
     ----------
     reflectance, emission : (t, 3) float
     reflectance_texture, emission_texture : Texture or None
+    clear : (t,) bool or None
     """
 
     reflectance: Floats
     emission: Floats
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
+    clear: np.ndarray | None = None
 
     def painted(self, reflectance: Floats) -> "Appearance":
         """The same with one reflectance (3,) all over."""
@@ -194,6 +196,8 @@ def appearance_of(
     if evaluation is not None:
         evaluated[evaluation.triangle] = True
     colours: dict[str, Any] = {}
+    if any(surface.clear for surface in surfaces):
+        colours["clear"] = np.array([surface.clear for surface in surfaces])[slot_of_triangle]
     for name in ("reflectance", "emission"):
         values = [getattr(surface, name) for surface in surfaces]
         constants = np.array([np.zeros(3) if varies(value) else value for value in values])

@@ -423,6 +423,7 @@ class _Reader:
                 emission=appearance.emission,
                 reflectance_texture=appearance.reflectance_texture,
                 emission_texture=appearance.emission_texture,
+                clear=appearance.clear,
                 baked=entry.owner is not None,
                 seen=role.seen,
                 shadow=role.shadow,

@@ -56,6 +56,8 @@ class Surface:
         Emitted radiance, linear RGB.
     notes : tuple of str
         What was skipped or guessed, each a clause to follow the material's name and a colon.
+    clear : bool
+        Whether light goes through it as if it were not there.
     unread : tuple of str
         Nodes that only Blender can evaluate, in the words of its Add menu: where there is one, the colours are guesses.
     """
@@ -64,6 +66,7 @@ class Surface:
     emission: Colour | Varying
     notes: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
+    clear: bool = False
 
     def colours(self) -> tuple[Colour | Varying, Colour | Varying]:
         """Return both."""
@@ -71,14 +74,18 @@ class Surface:
 
 
 def _surface(
-    reflectance: object = 0.0, emission: object = 0.0, notes: Iterable[str] = (), unread: Iterable[str] = ()
+    reflectance: object = 0.0,
+    emission: object = 0.0,
+    notes: Iterable[str] = (),
+    unread: Iterable[str] = (),
+    clear: bool = False,
 ) -> Surface:
     def colour(value: object) -> Colour | Varying:
         if isinstance(value, Varying):
             return value
         return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (3,)))
 
-    return Surface(colour(reflectance), colour(emission), tuple(notes), tuple(unread))
+    return Surface(colour(reflectance), colour(emission), tuple(notes), tuple(unread), clear)
 
 
 def uses_nodes(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) -> bool:
@@ -101,7 +108,7 @@ def material_surface(material: bpy.types.Material | None) -> Surface:
     reflectance = np.clip(shader.reflectance, 0.0, 1.0)
     if np.any(reflectance != shader.reflectance):
         notes = [*shader.notes, "its colour is brighter than white; white was used instead"]
-        return _surface(reflectance, shader.emission, notes, shader.unread)
+        return _surface(reflectance, shader.emission, notes, shader.unread, shader.clear)
     return shader
 
 
@@ -157,15 +164,21 @@ class _ShaderReader:
         output = self.tree.get_output_node("CYCLES")
         if output is None:
             return _surface()
-        reflectance, emission = self._shader(_input(output, "Surface"), ())
+        reflectance, emission, through = self._shader(_input(output, "Surface"), ())
+        clear = not varies(through) and bool(np.all(through >= _CLEAR))
+        if not clear and (varies(through) or np.any(through > 0.0)):
+            self.notes.append("it is transparent in part, but lets no light through")
         if not varies(emission) and np.any(emission < 0.0):
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
-        return _surface(reflectance, emission, dict.fromkeys(self.notes), dict.fromkeys(self.unread))
+        return _surface(reflectance, emission, dict.fromkeys(self.notes), dict.fromkeys(self.unread), clear)
 
-    def _shader(self, socket, groups) -> tuple[Value, Value]:
-        """Return reflectance and emission of whatever is linked to a shader socket; an open one is black."""
-        nothing = np.zeros(3), np.zeros(3)
+    def _shader(self, socket, groups) -> tuple[Value, Value, Value]:
+        """Return reflectance, emission and what is let through by whatever is linked to a shader socket.
+
+        An open one is black.
+        """
+        nothing = np.zeros(3), np.zeros(3), np.zeros(3)
         output, groups = self._source(socket, groups)
         if output is None:
             return nothing
@@ -174,9 +187,11 @@ class _ShaderReader:
             return self._principled(node, groups)
         if node.type in {"EMISSION", "BACKGROUND"}:
             colour, strength = self._colour(node, "Color", groups), self._value(node, "Strength", groups)
-            return np.zeros(3), combined(np.multiply, colour, strength)
+            return np.zeros(3), combined(np.multiply, colour, strength), np.zeros(3)
         if node.type == "BSDF_DIFFUSE":
-            return self._colour(node, "Color", groups), np.zeros(3)
+            return self._colour(node, "Color", groups), np.zeros(3), np.zeros(3)
+        if node.type == "BSDF_TRANSPARENT":
+            return np.zeros(3), np.zeros(3), self._colour(node, "Color", groups)
         if node.type == "MIX_SHADER":
             share = self._share(node, "Fac", groups)
             first, second = self._shader(node.inputs[1], groups), self._shader(node.inputs[2], groups)
@@ -186,7 +201,7 @@ class _ShaderReader:
             return tuple(combined(np.add, a, b) for a, b in zip(first, second, strict=True))
         return self._unsupported(node, groups)
 
-    def _principled(self, node, groups) -> tuple[Value, Value]:
+    def _principled(self, node, groups) -> tuple[Value, Value, Value]:
         opaque = self._share(node, "Alpha", groups)
         rest = [self._share(node, name, groups) for name in ("Metallic", "Transmission Weight")]
         diffuse = combined(lambda alpha, *shares: alpha * np.prod([1.0 - s for s in shares], axis=0), opaque, *rest)
@@ -197,20 +212,18 @@ class _ShaderReader:
         emission = np.zeros(3)
         if varies(strength) or strength != 0.0:
             emission = combined(np.multiply, self._colour(node, "Emission Color", groups), strength)
-        if varies(opaque) or opaque < 1.0:
-            self.notes.append("it is transparent (Alpha), but lets no light through")
-        return reflectance, emission
+        return reflectance, emission, combined(lambda alpha: (1.0 - alpha) * np.ones(3), opaque)
 
-    def _unsupported(self, node, groups) -> tuple[Value, Value]:
+    def _unsupported(self, node, groups) -> tuple[Value, Value, Value]:
         name = _title(node)
         if node.type in _DIFFUSE_LIKE:
             self.notes.append(f"{name} {_DIFFUSE_LIKE[node.type]}; it counts as diffuse")
-            return self._colour(node, "Color", groups), np.zeros(3)
+            return self._colour(node, "Color", groups), np.zeros(3), np.zeros(3)
         if node.type in NOT_DIFFUSE:
             self.notes.append(f"{name} reflects no diffuse light; that part counts as black")
-            return np.zeros(3), np.zeros(3)
+            return np.zeros(3), np.zeros(3), np.zeros(3)
         self._leave(name, f"{name} is not supported; that part counts as grey")
-        return np.full(3, GREY), np.zeros(3)
+        return np.full(3, GREY), np.zeros(3), np.zeros(3)
 
     def _leave(self, name: str, note: str) -> None:
         """Leave a node to Blender, or say what is made of it."""
@@ -410,6 +423,9 @@ _BLENDS = {
     "SCREEN": lambda a, b: 1.0 - (1.0 - a) * (1.0 - b),
 }
 """What a Mix node makes of its second colour where its factor is 1."""
+
+_CLEAR = 0.999
+"""Share of the light that is let through from which on a material counts as not being there."""
 
 _STRETCHED = 4.0
 """Times that an image may be stretched until the longer way decides how much of it is averaged."""

@@ -126,3 +126,13 @@ def procedural() -> list[Any]:
 def principled_picture() -> list[Any]:
     """What remains diffuse of it."""
     return painted_wall(image_texture, "ShaderNodeBsdfPrincipled", Specular_IOR_Level=0.0)
+
+
+@case("A transparent sheet above the floor")
+def transparent_sheet() -> list[Any]:
+    """Light goes through it from the lamp and from the wall."""
+    floor = stage.room()
+    air = stage.material("Air", "ShaderNodeBsdfTransparent")
+    stage.grid("Sheet", 2.5, 2.5, 2, air, location=(0.0, 0.0, 0.4))
+    stage.lamp("AREA", shape="DISK", size=0.5)
+    return [floor]

@@ -223,3 +223,14 @@ def test_a_world_of_negative_strength_is_left_dark_and_named():
     radiance, notes = world_radiance(world)
     assert radiance.tolist() == [0.0, 0.0, 0.0]
     assert notes == ("its emission is negative; the world was left dark",)
+
+
+def test_a_transparent_material_lets_light_through_and_one_in_part_does_not():
+    veil = principled(Alpha=0.0)
+    assert_surface(veil, 0.0)
+    assert material_surface(veil).clear
+    assert material_surface(node_material("Air", "ShaderNodeBsdfTransparent")).clear
+    half = principled(Base_Color=(0.8, 0.4, 0.2, 1.0), Alpha=0.5)
+    (note,) = assert_surface(half, (0.4, 0.2, 0.1))
+    assert "transparent in part" in note
+    assert not material_surface(half).clear
