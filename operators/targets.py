@@ -109,8 +109,10 @@ def joined_mesh(parts: Sequence[Part], matrix: Floats) -> LocalMesh:
     first = parts[0]
     if len(parts) == 1 and np.array_equal(first.matrix, matrix):
         return first.local
-    materials = list(first.materials)
-    slots = [first.local.slots, *(_slots_among(part, materials) for part in parts[1:])]
+    materials = list(first.materials) or [None]
+    # A face whose slot does not exist takes the last one, which is no longer the last below.
+    own = np.clip(first.local.slots, 0, len(materials) - 1)
+    slots = [own, *(_slots_among(part, materials) for part in parts[1:])]
     shapes = [_in_space_of(matrix, part) for part in parts]
     vertex = _starts([len(part.local.vertices) for part in parts])
     corner = _starts([len(part.local.vertex_of_corner) for part in parts])

@@ -365,3 +365,41 @@ def test_instances_that_would_show_the_light_of_another_place_are_named(output):
         select_also(cube, instancer)
         bake_selected(output)
         assert report()["warnings"] == []
+
+
+def test_textured_materials_of_instances_are_those_of_each(library):
+    bpy.context.scene.radiosity.material = "TEXTURED"
+    select_also(add_instancer(library))
+    bake_selected("REFINED")
+    (output,) = bpy.context.selected_objects
+    names = {output.material_slots[face.material_index].material.name for face in output.data.polygons}
+    counted = [output.material_slots[face.material_index].material.name for face in output.data.polygons]
+    red, blue = sorted(names, key=counted.count)
+    assert (counted.count(red), counted.count(blue)) == (4, 24)
+    assert "Red" in red and "Blue" in blue
+
+
+def test_instances_without_a_material_stay_without_beside_others(library):
+    bpy.context.scene.radiosity.material = "TEXTURED"
+    library.objects["Box"].data.materials.clear()
+    for face in library.objects["Box"].data.polygons:
+        face.material_index = 3
+    select_also(add_instancer(library))
+    bake_selected("REFINED")
+    (output,) = bpy.context.selected_objects
+    counted = [output.material_slots[face.material_index].material.name for face in output.data.polygons]
+    assert sum("Red" in name for name in counted) == 4 and len(counted) == 28
+
+
+@pytest.mark.parametrize("add", [add_text, lambda: add_instancer(bpy.data.collections["Library"])])
+def test_a_bake_of_what_is_no_mesh_is_one_step_of_undo(add, library):
+    name = add().name
+    select_also(bpy.data.objects[name])
+    bpy.ops.ed.undo_push(message="Made")
+    before = file_state()
+    bake_selected("REFINED")
+    bpy.ops.ed.undo_push(message="Bake")
+    bpy.ops.ed.undo()
+    assert differences(before, file_state()) == []
+    bpy.ops.ed.redo()
+    assert shows_its_own_place(bpy.data.objects[f"{name} Radiosity"])
