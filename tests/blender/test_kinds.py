@@ -20,7 +20,7 @@ from tests.blender.making import (
 )
 from tests.blender.state import differences, file_state
 
-pytestmark = pytest.mark.usefixtures("quick_bake")
+without_rays = pytest.mark.usefixtures("quick_bake")
 
 
 def add_text(name="Text"):
@@ -85,6 +85,7 @@ def front_normals(obj):
     return cross / np.linalg.norm(cross, axis=1, keepdims=True) * np.sign(np.linalg.det(matrix))
 
 
+@without_rays
 @pytest.mark.parametrize("add", [add_text, add_curve, add_surface, add_ball])
 def test_what_renders_as_a_mesh_gets_its_colours_in_a_refined_mesh_in_its_place(add):
     thing = add()
@@ -99,6 +100,7 @@ def test_what_renders_as_a_mesh_gets_its_colours_in_a_refined_mesh_in_its_place(
     np.testing.assert_allclose(output.matrix_world, thing.matrix_world, atol=1e-6)
 
 
+@without_rays
 @pytest.mark.parametrize("add", [add_text, add_curve, add_surface, add_ball])
 def test_restore_brings_back_what_is_no_mesh_as_it_was(add):
     select_also(add())
@@ -109,6 +111,7 @@ def test_restore_brings_back_what_is_no_mesh_as_it_was(add):
     assert differences(before, file_state()) == []
 
 
+@without_rays
 def test_a_refined_text_keeps_its_parent_constraints_and_animation():
     holder, text = add_cube("Holder"), add_text()
     text.parent = holder
@@ -125,6 +128,7 @@ def test_a_refined_text_keeps_its_parent_constraints_and_animation():
     assert output.location.x == 1.0
 
 
+@without_rays
 @pytest.mark.parametrize("add", [add_text, add_ball, lambda: add_instancer(bpy.data.collections["Library"])])
 def test_what_has_no_mesh_of_its_own_says_that_refined_mesh_bakes_it(add, library):
     thing = add()
@@ -133,6 +137,7 @@ def test_what_has_no_mesh_of_its_own_says_that_refined_mesh_bakes_it(add, librar
         bake_selected("ORIGINAL")
 
 
+@without_rays
 def test_a_metaball_of_a_family_is_baked_with_the_first_of_it():
     first, second = add_ball("Ball"), add_ball("Ball.001")
     second.location.x = 1.0
@@ -142,6 +147,7 @@ def test_a_metaball_of_a_family_is_baked_with_the_first_of_it():
     assert shows_its_own_place(bpy.data.objects["Ball Radiosity"]) and first.hide_render
 
 
+@without_rays
 def test_an_instancer_gets_its_instances_in_one_refined_mesh(library):
     instancer = add_instancer(library)
     instancer.location, instancer.scale, instancer.rotation_euler = (4.0, 0.0, 1.0), (1.0, -1.5, 1.0), (0.1, 0.2, 0.3)
@@ -155,6 +161,7 @@ def test_an_instancer_gets_its_instances_in_one_refined_mesh(library):
     assert report()["warnings"] == []
 
 
+@without_rays
 def test_the_faces_of_instances_keep_their_front(library, quick_bake):
     instancer = add_instancer(library)
     instancer.scale, instancer.rotation_euler = (1.0, -1.5, 1.0), (0.1, 0.2, 0.3)
@@ -170,6 +177,7 @@ def test_the_faces_of_instances_keep_their_front(library, quick_bake):
     np.testing.assert_allclose(found, np.concatenate(expected), atol=1e-4)
 
 
+@without_rays
 def test_materials_of_instances_get_a_slot_each(library):
     instancer = add_instancer(library)
     select_also(instancer)
@@ -179,6 +187,7 @@ def test_materials_of_instances_get_a_slot_each(library):
     assert len(output.material_slots) == 2 and np.bincount(slots).tolist() in ([4, 24], [24, 4])
 
 
+@without_rays
 def test_layers_of_instances_are_kept_and_are_empty_where_an_instance_has_none(library):
     leaf, box = library.objects
     leaf.data.uv_layers.new(name="Map")
@@ -199,6 +208,7 @@ def test_layers_of_instances_are_kept_and_are_empty_where_an_instance_has_none(l
     assert weights.count([0.5]) >= 2 and set(map(tuple, weights)) <= {(), (0.5,), (0.25,)}
 
 
+@without_rays
 def test_an_instancer_is_restored_and_baked_again(library):
     instancer = add_instancer(library)
     select_also(instancer)
@@ -213,6 +223,7 @@ def test_an_instancer_is_restored_and_baked_again(library):
     assert differences(before, file_state()) == []
 
 
+@without_rays
 def test_lamps_in_an_instanced_collection_are_said_to_be_hidden_with_it(library):
     library.objects.link(bpy.data.objects.new("Bulb", bpy.data.lights.new("Bulb", "POINT")))
     select_also(add_instancer(library))
@@ -221,6 +232,7 @@ def test_lamps_in_an_instanced_collection_are_said_to_be_hidden_with_it(library)
     assert 'lamps that "Instancer" instances' in warning
 
 
+@without_rays
 def test_a_mesh_with_vertex_instances_is_baked_with_them():
     ground, leaf = add_plane("Ground"), add_plane("Leaf")
     leaf.parent, ground.instance_type = ground, "VERTS"
@@ -231,6 +243,7 @@ def test_a_mesh_with_vertex_instances_is_baked_with_them():
     assert len(output.data.polygons) == 2 * 2 * 5 and shows_its_own_place(output)
 
 
+@without_rays
 def test_a_mesh_with_instances_is_baked_alone_in_place_and_says_so():
     ground, leaf = add_plane("Ground"), add_plane("Leaf")
     leaf.parent, ground.instance_type = ground, "VERTS"
@@ -240,6 +253,7 @@ def test_a_mesh_with_instances_is_baked_alone_in_place_and_says_so():
     assert any('instances that "Ground" makes' in warning for warning in report()["warnings"])
 
 
+@without_rays
 def test_a_mesh_deformed_by_its_parent_is_not_deformed_twice():
     lattice = add_object("Lattice", bpy.data.lattices.new("Lattice"))
     cube = add_cube()
@@ -259,6 +273,7 @@ def test_a_mesh_deformed_by_its_parent_is_not_deformed_twice():
     assert cube.parent_type == "LATTICE" and cube.location.x == 5.0
 
 
+@without_rays
 def test_a_sheared_mesh_is_baked_where_it_is_seen():
     holder = add_object("Holder", None)
     holder.scale, cube = (1.0, 3.0, 1.0), add_cube()
@@ -270,6 +285,7 @@ def test_a_sheared_mesh_is_baked_where_it_is_seen():
     np.testing.assert_allclose(output.matrix_world, cube.matrix_world, atol=1e-6)
 
 
+@without_rays
 def test_shape_keys_count_as_they_stand_at_the_current_frame():
     plane = add_plane()
     plane.shape_key_add(name="Basis")
@@ -288,6 +304,7 @@ def test_shape_keys_count_as_they_stand_at_the_current_frame():
     assert heights == pytest.approx(up.value * 2.0, abs=1e-5) and 0.5 < heights[0] < 1.5
 
 
+@without_rays
 def test_an_armature_counts_in_its_pose():
     armature = add_object("Rig", bpy.data.armatures.new("Rig"))
     bpy.context.view_layer.objects.active = armature
@@ -307,6 +324,7 @@ def test_an_armature_counts_in_its_pose():
     assert shows_its_own_place(output)
 
 
+@without_rays
 def test_users_of_one_mesh_get_a_result_each():
     first = add_plane("First")
     second = add_object("Second", first.data)
@@ -319,6 +337,7 @@ def test_users_of_one_mesh_get_a_result_each():
         assert all(shows_its_own_place(carrier) for carrier in carriers)
 
 
+@without_rays
 def test_hair_curves_point_clouds_and_volumes_are_left_out_by_name():
     add_object("Volume", bpy.data.volumes.new("Volume"))
     add_object("Fur", bpy.data.hair_curves.new("Fur"))
@@ -328,6 +347,7 @@ def test_hair_curves_point_clouds_and_volumes_are_left_out_by_name():
     assert '"Volume"' in warning and '"Fur"' in warning and "left out" in warning
 
 
+@without_rays
 def test_particle_hair_is_left_out_by_name():
     ground = add_plane("Ground")
     ground.modifiers.new("Grass", "PARTICLE_SYSTEM")
@@ -339,6 +359,7 @@ def test_particle_hair_is_left_out_by_name():
     assert 'hair of "Ground" was left out' in warning
 
 
+@without_rays
 def test_objects_that_particles_instance_are_baked_with_what_carries_the_particles():
     ground, leaf = add_plane("Ground"), add_plane("Leaf")
     ground.modifiers.new("Leaves", "PARTICLE_SYSTEM")
@@ -351,6 +372,7 @@ def test_objects_that_particles_instance_are_baked_with_what_carries_the_particl
     assert len(output.modifiers) == 0 and report()["warnings"] == []
 
 
+@without_rays
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
 def test_instances_that_would_show_the_light_of_another_place_are_named(output):
     parts = bpy.data.collections.new("Parts")
@@ -367,6 +389,7 @@ def test_instances_that_would_show_the_light_of_another_place_are_named(output):
         assert report()["warnings"] == []
 
 
+@without_rays
 def test_textured_materials_of_instances_are_those_of_each(library):
     bpy.context.scene.radiosity.material = "TEXTURED"
     select_also(add_instancer(library))
@@ -379,6 +402,7 @@ def test_textured_materials_of_instances_are_those_of_each(library):
     assert "Red" in red and "Blue" in blue
 
 
+@without_rays
 def test_instances_without_a_material_stay_without_beside_others(library):
     bpy.context.scene.radiosity.material = "TEXTURED"
     library.objects["Box"].data.materials.clear()
@@ -391,6 +415,7 @@ def test_instances_without_a_material_stay_without_beside_others(library):
     assert sum("Red" in name for name in counted) == 4 and len(counted) == 28
 
 
+@without_rays
 @pytest.mark.parametrize("add", [add_text, lambda: add_instancer(bpy.data.collections["Library"])])
 def test_a_bake_of_what_is_no_mesh_is_one_step_of_undo(add, library):
     name = add().name
@@ -403,3 +428,36 @@ def test_a_bake_of_what_is_no_mesh_is_one_step_of_undo(add, library):
     assert differences(before, file_state()) == []
     bpy.ops.ed.redo()
     assert shows_its_own_place(bpy.data.objects[f"{name} Radiosity"])
+
+
+def test_instances_get_the_light_that_objects_in_their_places_get(library):
+    bpy.context.scene.radiosity.quality = "DRAFT"
+    add_object("Sun", bpy.data.lights.new("Sun", "SUN")).rotation_euler = (0.5, 0.3, 0.0)
+    instancer = add_instancer(library)
+    select_also(instancer)
+    bake_selected("REFINED")
+    joined = bpy.data.objects["Instancer Radiosity"].data
+    corners = colours_of(joined, "Irradiance")
+    assert bpy.ops.radiosity.restore() == {"FINISHED"}
+    bpy.data.objects.remove(instancer)
+    bpy.context.scene.collection.children.link(library)
+    select_also(*library.objects)
+    bake_selected("REFINED")
+    apart = [colours_of(bpy.data.objects[f"{name} Radiosity"].data, "Irradiance") for name in ("Box", "Leaf")]
+    # The same arrays go to the same bake; joining them changes no value. The leaf is mirrored, and its object's faces run
+    # the other way round.
+    np.testing.assert_array_equal(*(np.sort(c.reshape(-1, 3, 4), axis=1) for c in (corners, np.concatenate(apart))))
+
+
+@pytest.mark.parametrize("add", [add_text, add_surface])
+def test_what_is_no_mesh_is_lit_as_the_mesh_that_it_converts_to(add):
+    bpy.context.scene.radiosity.quality = "DRAFT"
+    add_object("Sun", bpy.data.lights.new("Sun", "SUN")).rotation_euler = (0.5, 0.3, 0.0)
+    thing = add()
+    select_also(thing)
+    bake_selected("REFINED")
+    colours = colours_of(bpy.data.objects[f"{thing.name} Radiosity"].data, "Irradiance")
+    assert bpy.ops.radiosity.restore() == {"FINISHED"}
+    bpy.ops.object.convert(target="MESH")
+    bake_selected("REFINED")
+    np.testing.assert_array_equal(colours, colours_of(bpy.data.objects[f"{thing.name} Radiosity"].data, "Irradiance"))
