@@ -444,8 +444,8 @@ def test_instances_get_the_light_that_objects_in_their_places_get(library):
     select_also(*library.objects)
     bake_selected("REFINED")
     apart = [colours_of(bpy.data.objects[f"{name} Radiosity"].data, "Irradiance") for name in ("Box", "Leaf")]
-    # The same arrays go to the same bake; joining them changes no value. The leaf is mirrored, and its object's faces run
-    # the other way round.
+    # The same arrays go to the same bake; joining them changes no value. The leaf is mirrored, and the faces of its own
+    # object run the other way round.
     np.testing.assert_array_equal(*(np.sort(c.reshape(-1, 3, 4), axis=1) for c in (corners, np.concatenate(apart))))
 
 
