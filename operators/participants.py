@@ -137,10 +137,46 @@ def _show_collections(journal: Journal, participants: Participants) -> None:
 
 def _use_render_modifiers(journal: Journal, participants: Participants, scene: bpy.types.Scene) -> None:
     if scene.render.use_simplify:
-        journal.set(scene.render, "simplify_subdivision", scene.render.simplify_subdivision_render)
-    for obj in participants.everything():
+        for name in ("simplify_subdivision", "simplify_child_particles"):
+            _use_instead(journal, scene.render, name, f"{name}_render")
+    everything = participants.everything()
+    for obj in everything:
         for modifier in obj.modifiers:
-            if modifier.show_viewport != modifier.show_render:
-                journal.set(modifier, "show_viewport", modifier.show_render)
-            if modifier.type in {"SUBSURF", "MULTIRES"} and modifier.levels != modifier.render_levels:
-                journal.set(modifier, "levels", modifier.render_levels)
+            _use_instead(journal, modifier, "show_viewport", "show_render")
+            for name, in_render in _LEVELS_OF_MODIFIERS.get(modifier.type, ()):
+                _use_instead(journal, modifier, name, in_render)
+        for system in obj.particle_systems:
+            if system.settings.type == "HAIR":
+                _use_instead(journal, system.settings, "child_percent", "rendered_child_count")
+    for data in {obj.data for obj in everything}:
+        if isinstance(data, bpy.types.MetaBall):
+            _use_instead(journal, data, "resolution", "render_resolution")
+        elif isinstance(data, bpy.types.Curve):
+            _use_render_resolution(journal, data)
+
+
+_LEVELS_OF_MODIFIERS = {
+    "SUBSURF": (("levels", "render_levels"),),
+    "MULTIRES": (("levels", "render_levels"),),
+    "SCREW": (("steps", "render_steps"),),
+    "OCEAN": (("viewport_resolution", "resolution"),),
+}
+"""Properties that count in the viewport, and those that count in renders."""
+
+
+def _use_instead(journal: Journal, owner: object, name: str, in_render: str) -> None:
+    """Give the property for the viewport the value of that for renders."""
+    if getattr(owner, name) != getattr(owner, in_render):
+        journal.set(owner, name, getattr(owner, in_render))
+
+
+def _use_render_resolution(journal: Journal, curve: bpy.types.Curve) -> None:
+    for name in ("resolution_u", "resolution_v"):
+        in_render = getattr(curve, f"render_{name}")
+        # At 0, renders take the viewport's.
+        if in_render == 0:
+            continue
+        # A curve hands its resolution on to its splines, which may have others; they are taken back after it.
+        for spline in curve.splines:
+            journal.on_failure(setattr, spline, name, getattr(spline, name))
+        journal.set(curve, name, in_render)

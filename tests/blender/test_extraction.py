@@ -79,6 +79,51 @@ def test_modifiers_count_as_they_render_and_are_left_as_they_were():
     assert (subdivision.levels, subdivision.render_levels, subdivision.show_viewport) == (0, 2, False)
 
 
+def test_curves_and_metaballs_have_the_resolution_of_renders_and_keep_their_own():
+    ball = bpy.data.metaballs.new("Ball")
+    ball.elements.new()
+    ball.resolution, ball.render_resolution = 0.4, 0.1
+    add_object("Ball", ball)
+    curve = bpy.data.curves.new("Pipe", "CURVE")
+    curve.dimensions, curve.bevel_depth, curve.bevel_resolution = "3D", 0.1, 0
+    for _ in range(2):
+        spline = curve.splines.new("BEZIER")
+        spline.bezier_points.add(1)
+        spline.bezier_points[1].co = (1.0, 0.0, 0.0)
+    curve.resolution_u, curve.render_resolution_u = 3, 20
+    curve.splines[1].resolution_u = 7
+    add_object("Pipe", curve)
+    fine = extracted(add_cube())
+    # Four sides around each of two splines, cut along into as many pieces as renders have, two triangles each.
+    assert len(the_mesh(fine, "Pipe").triangles) == 2 * 4 * 20 * 2
+    assert (curve.resolution_u, [spline.resolution_u for spline in curve.splines]) == (3, [3, 7])
+    assert ball.resolution == pytest.approx(0.4)
+    ball.render_resolution = 0.4
+    rough = extracted(bpy.data.objects["Cube"])
+    assert len(the_mesh(fine, "Ball").triangles) > 8 * len(the_mesh(rough, "Ball").triangles)
+
+
+def test_a_screw_has_the_steps_of_renders_and_keeps_its_own():
+    line = add_mesh("Line", [(1, 0, 0), (1, 0, 1)], [])
+    line.data.edges.add(1)
+    line.data.edges[0].vertices = (0, 1)
+    screw = line.modifiers.new("Screw", "SCREW")
+    screw.steps, screw.render_steps = 8, 32
+    assert len(the_mesh(extracted(add_cube()), "Line").triangles) == 64
+    assert screw.steps == 8
+
+
+def test_children_of_particles_are_as_many_as_in_renders():
+    ground, leaf = add_plane("Ground"), add_plane("Leaf")
+    ground.modifiers.new("Leaves", "PARTICLE_SYSTEM")
+    settings = ground.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 5, "OBJECT", leaf
+    settings.child_type, settings.child_percent, settings.rendered_child_count = "SIMPLE", 2, 6
+    names = [mesh.name for mesh in extracted(add_cube()).scene.meshes]
+    assert names.count("Leaf") == 1 + 5 * 6
+    assert settings.child_percent == 2
+
+
 def test_a_parents_transform_is_included():
     parent = add_object("Parent", None)
     parent.location, parent.scale = (10.0, 0.0, 0.0), (2.0, 2.0, 2.0)
