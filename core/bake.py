@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from .patches import clustered_patches
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
-from .relight import KeptTransport, keep, shapes_of
+from .relight import KeptTransport, keep, parts_of, shapes_of
 from .result import BakeResult
 from .rows import BYTES_PER_RAY, COVER_GAP
 from .scene import Ints, Scene
@@ -248,12 +249,10 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "ended": rounds.ended,
     }
     story = Story(settings, counts, limit_warnings(rounds, per_row, effort, crowded))
-    result = result_of(scene, surfaces, lit, patches, light.solution, shown, cuts, story, clock)
-    if not settings.keep_transport:
-        return result
-    return replace(
-        result, kept=keep(KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, story))
-    )
+    kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, story)
+    parts = partial(parts_of, kept, scene, rays.workers)
+    result = result_of(scene, surfaces, lit, patches, light.solution, shown, cuts, story, clock, parts)
+    return replace(result, kept=keep(kept)) if settings.keep_transport else result
 
 
 def minimum_sizes(surfaces: Surfaces, settings: BakeSettings, effort: Effort) -> tuple[float, float]:

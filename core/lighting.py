@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -21,7 +22,8 @@ from .gather import Gathered, look_again
 from .interpolation import InterpolatedRadiance, PlacesOnFaces
 from .lit import Lit
 from .output import baked_meshes
-from .result import BakeResult
+from .parts import Part, wants_parts, with_groups
+from .result import BakedMesh, BakeResult
 from .sampling import Singles
 from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
@@ -188,6 +190,7 @@ def result_of(
     cuts: TracedCuts | None,
     story: Story,
     clock: Clock,
+    parts_of: Callable[[Floats], tuple[Part, list[Part]]],
 ) -> BakeResult:
     """Sort the light of the faces back to the meshes, and write the report.
 
@@ -196,10 +199,19 @@ def result_of(
     lit : (shells, 2) bool
     cuts : TracedCuts or None
         None where faces are not cut.
+    parts_of : callable
+        Gives the light that was asked for and its groups, of all the light at the corners of the faces.
     """
-    faces, face, irradiance = _cut(shown, cuts)
+    faces, face, irradiance = cut_light(shown, cuts)
     output = story.settings.output
-    meshes, warnings = baked_meshes(scene, surfaces, lit, faces, face, irradiance, output)
+
+    def meshes_of(part: Part) -> tuple[tuple[BakedMesh, ...], list[str]]:
+        coloured = surfaces if part.scene is scene else surfaces.recoloured(part.scene)
+        return baked_meshes(part.scene, coloured, lit, faces, face, part.irradiance, output)
+
+    asked, groups = parts_of(irradiance) if wants_parts(story.settings) else (Part("", scene, irradiance), [])
+    meshes, warnings = meshes_of(asked)
+    meshes = with_groups(meshes, [(group.name, meshes_of(group)[0]) for group in groups])
     error = shown.error(surfaces)
     from_lamps = patches.direct.irradiance(patches.emitters.lamps_alone())
     balance = energy(patches.balance, solution, from_lamps, surfaces)
@@ -228,7 +240,7 @@ def result_of(
     return BakeResult(meshes, report)
 
 
-def _cut(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]:
+def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]:
     """Cut the faces that are hidden in part, where the hidden part begins; returns faces, face sides and values."""
     if cuts is None:
         return shown.faces, shown.face, shown.corner_irradiance()

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
 from hashlib import blake2b
 from typing import Any
 
@@ -18,19 +19,22 @@ from .clock import Clock
 from .errors import BakeError
 from .interpolation import PlacesOnFaces
 from .lighting import (
+    PatchLight,
     Story,
     TracedCuts,
     TracedPatches,
     check_light,
+    cut_light,
     light_of_patches,
     looked_again,
     relit,
     result_of,
 )
 from .lit import Lit
+from .parts import NotDividedError, Part, divided
 from .progress import ProgressCallback, no_progress
 from .result import BakeResult
-from .scene import Lamp, Scene, SurfaceMesh
+from .scene import Floats, Lamp, Scene, SurfaceMesh
 from .surfaces import Surfaces
 from .workers import Workers
 
@@ -82,14 +86,18 @@ class NotKept:
 def keep(kept: KeptTransport) -> KeptTransport | NotKept:
     """Give back the transport, or say why it cannot be kept: it would take more than the memory limit."""
     limit = kept.story.settings.memory_limit
-    gathers = [kept.shown.gathered, *((kept.cuts.seen, kept.cuts.hidden) if kept.cuts else ())]
-    complete = all(len(gathered.places) == 0 or gathered.places.rays > 0 for gathered in gathers)
-    if complete and size_of(kept) <= limit * 2**20:
+    if is_complete(kept) and size_of(kept) <= limit * 2**20:
         return kept
     return NotKept(
         f"What the rays of the last bake met is larger than the memory limit of {limit:,} MiB and was not kept; "
         "raise the limit and bake again to relight"
     )
+
+
+def is_complete(kept: KeptTransport) -> bool:
+    """Whether all places that rays met are known, which the memory limit may have prevented."""
+    gathers = [kept.shown.gathered, *((kept.cuts.seen, kept.cuts.hidden) if kept.cuts else ())]
+    return all(len(gathered.places) == 0 or gathered.places.rays > 0 for gathered in gathers)
 
 
 def size_of(value: object) -> int:
@@ -178,20 +186,55 @@ def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Wor
     light = light_of_patches(patches, surfaces)
 
     clock.start("Gathering", 0.4, 0.9)
-    radiance = Radiance.of(patches.cells, light.seen, surfaces.world)
-    shown = replace(kept.shown, gathered=relit(workers, patches.emitters, radiance, kept.shown.gathered))
-    cuts = kept.cuts
-    if kept.on_faces is not None:
-        shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.on_faces)
-    if cuts is not None:
-        seen, hidden = (relit(workers, patches.emitters, radiance, side) for side in (cuts.seen, cuts.hidden))
-        cuts = TracedCuts(cuts.edges, seen, hidden)
+    shown, cuts = _gathered_again(kept, patches, light, surfaces, workers)
 
     clock.start("Reconstructing", 0.9, 1.0)
     counts = {**kept.story.counts, "relit": True, "rays": 0, "seconds_in_ray_library": 0.0}
     counts["rays_by_kind"] = dict.fromkeys(counts["rays_by_kind"], 0)
     story = replace(kept.story, counts=counts)
-    return result_of(scene, surfaces, kept.lit, patches, light.solution, shown, cuts, story, clock)
+    parts = partial(parts_of, kept, scene, workers)
+    return result_of(scene, surfaces, kept.lit, patches, light.solution, shown, cuts, story, clock, parts)
+
+
+def _gathered_again(
+    kept: KeptTransport, patches: TracedPatches, light: PatchLight, surfaces: Surfaces, workers: Workers
+) -> tuple[Lit, TracedCuts | None]:
+    """Light at the vertices of the faces, and at their cuts, in the light of the patches."""
+    radiance = Radiance.of(patches.cells, light.seen, surfaces.world)
+    shown = replace(kept.shown, gathered=relit(workers, patches.emitters, radiance, kept.shown.gathered))
+    if kept.on_faces is not None:
+        shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.on_faces)
+    if kept.cuts is None:
+        return shown, None
+    seen, hidden = (relit(workers, patches.emitters, radiance, side) for side in (kept.cuts.seen, kept.cuts.hidden))
+    return shown, TracedCuts(kept.cuts.edges, seen, hidden)
+
+
+def parts_of(kept: KeptTransport, scene: Scene, workers: Workers, whole: Floats) -> tuple[Part, list[Part]]:
+    """The light that the settings ask for, and its groups, as `divided` gives them.
+
+    Parameters
+    ----------
+    whole : (f, 3, 3) float, W m^-2 sr^-1
+        Irradiance over pi at the corners of face sides, by all of the light.
+
+    Raises
+    ------
+    NotDividedError
+        When what the rays met was not kept.
+    """
+    if not is_complete(kept):
+        raise NotDividedError(
+            "The memory limit leaves no room to tell the parts of the light apart; raise it, or bake everything"
+        )
+
+    def irradiance_of(other: Scene) -> Floats:
+        surfaces = kept.surfaces.recoloured(other)
+        patches = kept.patches.recoloured(surfaces)
+        light = light_of_patches(patches, surfaces)
+        return cut_light(*_gathered_again(kept, patches, light, surfaces, workers))[2]
+
+    return divided(scene, kept.story.settings, whole, irradiance_of)
 
 
 def check_shapes(kept: KeptTransport, scene: Scene) -> None:

@@ -14,6 +14,26 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
+class GroupLight:
+    """The baked values of one light group on one mesh.
+
+    Attributes
+    ----------
+    name : str
+        Empty for the light of no group.
+    radiosity, irradiance : (s, 3, 3) float, W m^-2 sr^-1
+    radiosity_back, irradiance_back : (s, 3, 3) float or None
+        As of `BakedMesh`, of this light alone.
+    """
+
+    name: str
+    radiosity: Floats
+    irradiance: Floats
+    radiosity_back: Floats | None = None
+    irradiance_back: Floats | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class BakedMesh:
     """The baked values of one mesh, for each corner of its output triangles.
 
@@ -38,6 +58,8 @@ class BakedMesh:
         Outgoing radiance L and irradiance over pi, linear RGB, of the front side.
     radiosity_back, irradiance_back : (s, 3, 3) float or None
         The same for the back side, where light reaches it; None where it is unlit or the inside of a solid.
+    groups : tuple of GroupLight
+        The same light by light groups, where it was asked for; they sum up to the values above.
     """
 
     mesh: int
@@ -50,6 +72,7 @@ class BakedMesh:
     irradiance: Floats
     radiosity_back: Floats | None = None
     irradiance_back: Floats | None = None
+    groups: tuple[GroupLight, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

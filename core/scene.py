@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +78,19 @@ class SurfaceMesh:
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
     clear: NDArray[np.bool_] | None = None
+
+    def emits(self) -> bool:
+        """Whether it gives light anywhere."""
+        texture = self.emission_texture
+        return bool(np.any(self.emission)) or (texture is not None and bool(np.any(texture.colours)))
+
+    def without_emission(self) -> SurfaceMesh:
+        """The same mesh, dark."""
+        return replace(self, emission=np.zeros_like(self.emission), emission_texture=None)
+
+    def without_reflectance(self) -> SurfaceMesh:
+        """The same mesh, black."""
+        return replace(self, reflectance=np.zeros_like(self.reflectance), reflectance_texture=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,6 +196,24 @@ class SunLamp:
 Lamp = PointLamp | AreaLamp | SunLamp
 
 
+@dataclass(frozen=True)
+class LightGroup:
+    """What gives light under one name; light of what no group names belongs to none.
+
+    Attributes
+    ----------
+    name : str
+    meshes, lamps : frozenset of int
+        Indices into `Scene.meshes` and `Scene.lamps`.
+    world : bool
+    """
+
+    name: str
+    meshes: frozenset[int] = frozenset()
+    lamps: frozenset[int] = frozenset()
+    world: bool = False
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Everything that takes part in the light transport.
@@ -195,11 +226,14 @@ class Scene:
         Radiance that a ray meets when it leaves the scene.
     lamps : tuple of Lamp
         In a fixed order.
+    light_groups : tuple of LightGroup
+        No two of which share anything.
     """
 
     meshes: tuple[SurfaceMesh, ...]
     world: Floats
     lamps: tuple[Lamp, ...] = ()
+    light_groups: tuple[LightGroup, ...] = ()
 
 
 def surface_mesh(

@@ -16,6 +16,11 @@ LARGEST = 2**31 - 1
 
 OUTPUTS = ("REFINED", "ORIGINAL")
 MATERIALS = ("PLAIN", "TEXTURED")
+DOMAINS = ("CORNER", "POINT")
+DATA_TYPES = ("FLOAT", "BYTE")
+LONGEST_PREFIX = 32
+"""Characters before the name of an attribute, which Blender cuts at 63 in some versions."""
+LIGHTS = ("ALL", "IRRADIANCE", "DIRECT", "INDIRECT")
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,18 @@ class BakeSettings:
         rays, and a warning.
     keep_transport : bool
         Whether the result holds what the rays met, so that it can be lit again; that, too, stays below the limit.
+    light : str
+        Which light the values hold: `'ALL'`, only what comes straight from what emits and from the world
+        (`'DIRECT'`), or only what was reflected before (`'INDIRECT'`). Of whoever stores it: `'IRRADIANCE'` is all,
+        but stored without the radiosity.
+    light_groups : bool
+        Whether the values are also given for each light group of the scene.
+    domain, data_type : str
+        Of whoever stores the result: at face corners or vertices, and in single precision or as 8-bit sRGB.
+    byte_maximum : float
+        W m^-2 sr^-1 that 8 bits reach up to; 0 takes the brightest value that there is.
+    prefix : str
+        What the names of the attributes begin with.
     material : str
         Of whoever stores the result: `'PLAIN'` shows the radiosity as it is, `'TEXTURED'` the irradiance on the
         colours and textures of the original materials.
@@ -62,6 +79,12 @@ class BakeSettings:
     threads: int = 0
     memory_limit: int = 2048
     keep_transport: bool = True
+    light: str = "ALL"
+    light_groups: bool = False
+    domain: str = "CORNER"
+    data_type: str = "FLOAT"
+    byte_maximum: float = 0.0
+    prefix: str = ""
     material: str = "PLAIN"
 
     def __post_init__(self) -> None:
@@ -75,10 +98,21 @@ class BakeSettings:
             ("Method", self.method, METHODS),
             ("Quality", self.quality, QUALITIES),
             ("Output", self.output, OUTPUTS),
+            ("Light", self.light, LIGHTS),
+            ("Domain", self.domain, DOMAINS),
+            ("Data type", self.data_type, DATA_TYPES),
             ("Material", self.material, MATERIALS),
         ):
             if value not in allowed:
                 raise SettingsError(f"{name} is {value!r}; choose one of {', '.join(allowed)}")
+        if not (math.isfinite(self.byte_maximum) and self.byte_maximum >= 0.0):
+            raise SettingsError(
+                f"The byte maximum is {self.byte_maximum:g}; choose a positive brightness, or 0 to have it chosen"
+            )
+        if len(self.prefix) > LONGEST_PREFIX or self.prefix.startswith("."):
+            raise SettingsError(
+                f"The prefix is {self.prefix!r}; choose up to {LONGEST_PREFIX} characters that begin with no dot"
+            )
         if not 0 <= self.seed <= LARGEST:
             raise SettingsError(f"Seed is {self.seed}; choose 0 to {LARGEST}")
         if not 0 <= self.threads <= LARGEST:

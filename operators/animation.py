@@ -23,6 +23,7 @@ from ..core.relight import ChangedSceneError, KeptTransport, NotKept, relight
 from ..core.result import BakeResult
 from ..core.scene import Floats, Scene
 from ..core.settings import BakeSettings
+from .attributes import Attributes, attributes_of, attributes_to_be
 from .bake import (
     POLL_SECONDS,
     RADIOSITY_OT_bake,
@@ -147,7 +148,7 @@ class FrameRange:
         objects = [by_uid[uid] for uid in self._uids if uid in by_uid]
         with named(frame):
             extraction = extract(self._context, objects, self._settings.output)
-            check_storable(extraction, self._settings.output)
+            check_storable(extraction, attributes_to_be(self._settings, extraction.scene))
         self._frame = extraction, time.perf_counter() - began
         settings = replace(self._settings, keep_transport=True)
         return extraction.scene, settings, _light(self._kept, frame, self._next, len(self._frames))
@@ -189,12 +190,17 @@ class FrameRange:
     def _keep_colours(self, lit: LitFrame) -> None:
         """Keep the colours alone: whole results of many frames would take gigabytes."""
         by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
+        attributes = self._attributes_of_sets(lit)
         for target, baked in baked_targets(lit.extraction.scene, lit.extraction.targets, lit.result):
             if self._settings.output == "REFINED":
-                values = values_of_corners(target, baked)
+                values = values_of_corners(target, baked, attributes)
             else:
-                values = values_in_place(by_uid[target.uid].data, target, baked)
+                values = values_in_place(by_uid[target.uid].data, target, baked, attributes)
             self._sets.setdefault(target.uid, {})[lit.frame] = _single(values)
+
+    def _attributes_of_sets(self, lit: LitFrame) -> Attributes:
+        # Bytes of another exposure for each frame could not be compared.
+        return attributes_to_be(replace(self._settings, data_type="FLOAT"), lit.extraction.scene)
 
     def _write(self, lit: LitFrame) -> None:
         self._store(lit)
@@ -217,12 +223,14 @@ class FrameRange:
         scene = scene_of(lit.extraction)
 
         def beside(obj: bpy.types.Object, uid: int, journal: Journal) -> None:
-            add_sets(obj, self._sets.get(uid, {}), journal)
+            add_sets(obj, self._sets.get(uid, {}), self._attributes_of_sets(lit), journal)
 
-        objects, cautions = store(scene, lit.extraction, lit.result, self._settings, beside)
+        attributes, exposure = attributes_of(self._settings, lit.extraction.scene, lit.result)
+        objects, cautions = store(scene, lit.extraction, lit.result, attributes, beside)
         kept = lit.result.kept if self._settings.keep_transport else None
         remember(scene, lit.extraction, self._settings, replace(lit.result, kept=kept), objects)
-        report = shown_report(lit.extraction, lit.result, objects, cautions, lit.read, time.perf_counter() - began)
+        stored = time.perf_counter() - began
+        report = shown_report(lit.extraction, lit.result, objects, cautions, exposure, lit.read, stored)
         report["frames"] = self._told
         scene.radiosity.report = json.dumps(report)
         return report

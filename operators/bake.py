@@ -14,6 +14,7 @@ from ..core.progress import Progress, ProgressCallback, no_progress
 from ..core.result import BakeResult
 from ..core.scene import Scene
 from ..core.settings import BakeSettings
+from .attributes import attributes_of, attributes_to_be
 from .display import show_in_viewport
 from .extraction import Extraction, extract
 from .job import BakeJob, Failed, Finished
@@ -46,7 +47,7 @@ def bake_objects(
     """
     began = time.perf_counter()
     extraction = extract(context, objects, settings.output)
-    check_storable(extraction, settings.output)
+    check_storable(extraction, attributes_to_be(settings, extraction.scene))
     read = time.perf_counter() - began
     return finish(extraction, trace(extraction.scene, settings, progress), settings, read)
 
@@ -55,9 +56,10 @@ def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, r
     """Store `result`, then write and return the report; `read` is the seconds that the extraction took."""
     began = time.perf_counter()
     scene = scene_of(extraction)
-    objects, cautions = store(scene, extraction, result, settings, without_sets)
+    attributes, exposure = attributes_of(settings, extraction.scene, result)
+    objects, cautions = store(scene, extraction, result, attributes, without_sets)
     remember(scene, extraction, settings, result, objects)
-    report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
+    report = shown_report(extraction, result, objects, cautions, exposure, read, time.perf_counter() - began)
     scene.radiosity.report = json.dumps(report)
     return report
 
@@ -67,6 +69,7 @@ def shown_report(
     result: BakeResult,
     objects: list[bpy.types.Object],
     cautions: list[str],
+    exposure: dict[str, Any] | None,
     read: float,
     stored: float,
 ) -> dict[str, Any]:
@@ -79,6 +82,7 @@ def shown_report(
         "profile": profile(seconds, result.report),
         "objects": [obj.name for obj in objects],
         "evaluated_by_blender": list(extraction.evaluated),
+        "exposure": exposure,
         "warnings": [*extraction.warnings, *result.report.get("warnings", ()), *cautions],
     }
 
@@ -184,7 +188,7 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         try:
             self._settings = bake_settings(context.scene.radiosity)
             self._extraction = extract(context, context.selected_objects, self._settings.output)
-            check_storable(self._extraction, self._settings.output)
+            check_storable(self._extraction, attributes_to_be(self._settings, self._extraction.scene))
         except BakeError as error:
             return self._gave_up(error)
         self._read = time.perf_counter() - began

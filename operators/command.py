@@ -13,7 +13,7 @@ import bpy
 
 from ..core.errors import BakeError, Cancelled
 from ..core.progress import Progress
-from ..core.settings import MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
+from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
 from .animation import FRAME_OUTPUTS, bake_frames, file_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_writable, replaced
@@ -115,6 +115,16 @@ def _parser() -> argparse.ArgumentParser:
         help="attributes Radiosity.0001, ... in one file (the default), or files named like --output with _0001, ...",
     )
     what.add_argument("--bake-to", choices=OUTPUTS, help="new refined meshes, or the meshes as they are")
+    what.add_argument("--light", choices=LIGHTS, help="everything, lighting without colours, or a part of the light")
+    what.add_argument(
+        "--light-groups", action=argparse.BooleanOptionalAction, help="one more attribute for each light group"
+    )
+    what.add_argument("--domain", choices=DOMAINS, help="colours of face corners, or of vertices")
+    what.add_argument("--data-type", choices=DATA_TYPES, help="32 or 8 bits a channel")
+    what.add_argument(
+        "--byte-maximum", type=float, metavar="BRIGHTNESS", help="what 8 bits reach up to; 0: the brightest there is"
+    )
+    what.add_argument("--prefix", metavar="TEXT", help="what the attributes' names begin with")
     what.add_argument("--material", choices=MATERIALS, help="the light as it is, or on your materials' textures")
     how = parser.add_argument_group("how it is baked")
     how.add_argument("--threshold", type=float, help="share of another surface's light above which one is split")
@@ -209,6 +219,12 @@ def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettin
         "threads": options.threads,
         "memory_limit": options.memory_limit,
         "keep_transport": None,
+        "light": options.light,
+        "light_groups": options.light_groups,
+        "domain": options.domain,
+        "data_type": options.data_type,
+        "byte_maximum": options.byte_maximum,
+        "prefix": options.prefix,
         "material": options.material,
     }
     return BakeSettings(**{name: getattr(saved, name) if value is None else value for name, value in given.items()})

@@ -4,20 +4,37 @@
 
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import dataclass
 
 import bpy
 
 from .journal import Journal
 
-RADIOSITY = "Radiosity"
-IRRADIANCE = "Irradiance"
-RADIOSITY_BACK = "Radiosity Back"
-IRRADIANCE_BACK = "Irradiance Back"
-ATTRIBUTES = (RADIOSITY, IRRADIANCE, RADIOSITY_BACK, IRRADIANCE_BACK)
+
+@dataclass(frozen=True)
+class Shown:
+    """What of a baked mesh a display material shows.
+
+    Attributes
+    ----------
+    front : str
+        Name of the attribute.
+    back : str or None
+        That of the back, if it is to be seen.
+    strength : float
+        What values of 1 in the attributes stand for.
+    emits : bool
+        Whether what surfaces emit is to be seen, where that is not in the attribute.
+    """
+
+    front: str
+    back: str | None = None
+    strength: float = 1.0
+    emits: bool = True
+
 
 MARK = "radiosity_display"
 """Custom property that tells our materials from the user's, whatever they are renamed to."""
-_NAMES = {"FRONT": "Radiosity Display", "BOTH": "Radiosity Display Two-Sided"}
 
 
 def is_display(material: bpy.types.Material | None) -> bool:
@@ -25,21 +42,15 @@ def is_display(material: bpy.types.Material | None) -> bool:
     return material is not None and MARK in material
 
 
-def display_material(both_sides: bool, journal: Journal) -> bpy.types.Material:
-    """Return the material that shows the attribute `Radiosity`, made anew if the file has none.
-
-    Parameters
-    ----------
-    both_sides : bool
-        Whether the back of a face shows the attribute `Radiosity Back` instead.
-    """
-    sides = "BOTH" if both_sides else "FRONT"
+def display_material(shown: Shown, journal: Journal) -> bpy.types.Material:
+    """Return the material that shows an attribute as it is, made anew if the file has none."""
+    kind = f"PLAIN {shown}"
     for material in bpy.data.materials:
-        if material.library is None and material.get(MARK) == sides:
+        if material.library is None and material.get(MARK) == kind:
             return material
-    material = new_material(_NAMES[sides], journal)
-    mark(material, sides)
-    _build_nodes(material.node_tree, both_sides)
+    material = new_material("Radiosity Display" if shown.back is None else "Radiosity Display Two-Sided", journal)
+    mark(material, kind)
+    _build_nodes(material.node_tree, shown)
     return material
 
 
@@ -60,9 +71,9 @@ def mark(material: bpy.types.Material, kind: str) -> None:
         material.cycles.emission_sampling = "NONE"
 
 
-def _build_nodes(tree: bpy.types.NodeTree, both_sides: bool) -> None:
+def _build_nodes(tree: bpy.types.NodeTree, shown: Shown) -> None:
     tree.nodes.clear()
-    front = _emission_of_attribute(tree, RADIOSITY, 0.0)
+    front = _emission_of_attribute(tree, shown.front, shown.strength, 0.0)
     # The glTF exporter of Blender knows an unlit material with vertex colours by a switch for camera rays.
     switch = tree.nodes.new("ShaderNodeMixShader")
     switch.location = (400.0, 0.0)
@@ -72,9 +83,9 @@ def _build_nodes(tree: bpy.types.NodeTree, both_sides: bool) -> None:
     tree.links.new(front.outputs[0], switch.inputs[1])
     tree.links.new(front.outputs[0], switch.inputs[2])
     _output(tree, switch, "ALL", 0.0)
-    if not both_sides:
+    if shown.back is None:
         return
-    back = _emission_of_attribute(tree, RADIOSITY_BACK, -200.0)
+    back = _emission_of_attribute(tree, shown.back, shown.strength, -200.0)
     geometry = tree.nodes.new("ShaderNodeNewGeometry")
     geometry.location = (200.0, -300.0)
     mix = tree.nodes.new("ShaderNodeMixShader")
@@ -94,12 +105,12 @@ def _output(tree: bpy.types.NodeTree, shader: bpy.types.Node, target: str, heigh
     tree.links.new(shader.outputs[0], output.inputs["Surface"])
 
 
-def _emission_of_attribute(tree: bpy.types.NodeTree, name: str, height: float) -> bpy.types.Node:
+def _emission_of_attribute(tree: bpy.types.NodeTree, name: str, strength: float, height: float) -> bpy.types.Node:
     colour = tree.nodes.new("ShaderNodeVertexColor")
     colour.layer_name = name
     colour.location = (0.0, height)
     emission = tree.nodes.new("ShaderNodeEmission")
-    emission.inputs["Strength"].default_value = 1.0
+    emission.inputs["Strength"].default_value = strength
     emission.location = (200.0, height)
     tree.links.new(colour.outputs["Color"], emission.inputs["Color"])
     return emission

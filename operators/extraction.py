@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..core.errors import NothingToBakeError
-from ..core.scene import Floats, Lamp, Scene, SurfaceMesh
+from ..core.scene import Floats, Lamp, LightGroup, Scene, SurfaceMesh
 from .appearance import Appearance, Colouring
 from .display import is_display
 from .lamps import lamp_of
@@ -86,7 +86,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
     warnings += reader.warnings()
     warnings += [f'World "{context.scene.world.name}": {note}' for note in notes]
     return Extraction(
-        Scene(tuple(reader.meshes), world, tuple(reader.lamps)),
+        Scene(tuple(reader.meshes), world, tuple(reader.lamps), reader.light_groups(context.scene.world)),
         targets,
         tuple(warnings),
         tuple(reader.evaluated()),
@@ -221,6 +221,8 @@ class _Entry:
     materials : tuple of Material or None
     matrix : (4, 4) float
     layers : Layers or None
+    light_group : str
+        Empty for none.
     """
 
     order: tuple[Any, ...]
@@ -231,6 +233,7 @@ class _Entry:
     materials: tuple[Any, ...]
     matrix: Floats
     layers: Layers | None
+    light_group: str
 
 
 class _Reader:
@@ -256,6 +259,8 @@ class _Reader:
         self._users_of_lamp_note: dict[str, dict[str, None]] = {}
         self.meshes: list[SurfaceMesh] = []
         self.lamps: list[Lamp] = []
+        self._groups_of_meshes: list[str] = []
+        self._groups_of_lamps: list[str] = []
         self.targets: list[Target] = []
         self._parts: dict[bpy.types.Object, list[Part]] = {}
         self._matrices: dict[bpy.types.Object, Floats] = {}
@@ -273,6 +278,20 @@ class _Reader:
         for entry, appearance in zip(entries, colours, strict=True):
             self._add(entry, appearance)
         self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
+
+    def light_groups(self, world: bpy.types.World | None) -> tuple[LightGroup, ...]:
+        """Return the light groups that something which gives light is in, in the order of their names."""
+        of_world = world.lightgroup if world is not None else ""
+        named = {group for group, mesh in zip(self._groups_of_meshes, self.meshes, strict=True) if mesh.emits()}
+        return tuple(
+            LightGroup(
+                name,
+                frozenset(index for index, group in enumerate(self._groups_of_meshes) if group == name),
+                frozenset(index for index, group in enumerate(self._groups_of_lamps) if group == name),
+                of_world == name,
+            )
+            for name in sorted(named.union(self._groups_of_lamps, [of_world]) - {""})
+        )
 
     def warnings(self) -> list[str]:
         """Return a sentence for everything that was left out or guessed."""
@@ -315,7 +334,7 @@ class _Reader:
         ]
 
     def _entries(self) -> Iterator[_Entry]:
-        lamps: list[tuple[Any, Lamp | None]] = []
+        lamps: list[tuple[Any, Lamp | None, str]] = []
         for instance in self._depsgraph.object_instances:
             if not self._participants.include(instance):
                 continue
@@ -336,8 +355,10 @@ class _Reader:
                 self._shown_elsewhere[(original.name, parent.name)] = None
             role = role_of([original] if parent in (None, original) else [original, parent])
             owner = self._owner(instance, matrix, role)
+            # As Cycles has it: what makes an instance may name the group for it.
+            light_group = original.lightgroup or (parent.lightgroup if parent else "")
             if obj.type == "LIGHT":
-                lamps.append((order, self._lamp(obj, matrix) if role.seen else None))
+                lamps.append((order, self._lamp(obj, matrix) if role.seen else None, light_group))
                 if owner is not None:
                     self._instanced_lamps[owner.name] = None
             if obj.type != "MESH":
@@ -347,8 +368,10 @@ class _Reader:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
                 materials = _slot_materials(obj, local)
                 self._colouring.read(obj, local, materials)
-                yield _Entry(order, original, owner, role, local, materials, matrix, layers)
-        self.lamps = [lamp for _, lamp in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
+                yield _Entry(order, original, owner, role, local, materials, matrix, layers, light_group)
+        found = [(lamp, group) for _, lamp, group in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
+        self.lamps = [lamp for lamp, _ in found]
+        self._groups_of_lamps = [group for _, group in found]
 
     def _shows_what_is_baked(self, original: bpy.types.Object, parent: bpy.types.Object) -> bool:
         """Return whether an instance that `parent` makes of `original` will show the colours that `original` gets.
@@ -413,6 +436,7 @@ class _Reader:
             part = Part(len(self.meshes), local, entry.materials, matrix, entry.layers, glow)
             self._parts.setdefault(entry.owner, []).append(part)
         vertices, normals = placed(local, matrix)
+        self._groups_of_meshes.append(entry.light_group)
         self.meshes.append(
             SurfaceMesh(
                 name=entry.original.name,

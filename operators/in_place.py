@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Baked values on the meshes that the objects have."""
 
+import re
 from collections.abc import Mapping
 
 import bpy
@@ -10,6 +11,7 @@ import numpy as np
 from ..core.result import BakedMesh
 from ..core.scene import Floats
 from . import display
+from .attributes import Attributes
 from .changes import (
     active_attributes,
     remember_active_attributes,
@@ -21,13 +23,15 @@ from .colours import AttributeNameError, remove_if_there, write_colours
 from .journal import Journal
 from .local_mesh import local_mesh
 from .record import BAKED_IN_PLACE
-from .refined import baked_values
 from .targets import Target
 from .textured import Displays
 from .transfer import nearest_corners
 
+_FRAME = re.compile(r"\.\d{4,}$")
+"""How the name of an attribute of one frame ends."""
 
-def check_names(obj: bpy.types.Object) -> None:
+
+def check_names(obj: bpy.types.Object, attributes: Attributes) -> None:
     """Refuse an object whose vertex groups have names of ours; only attributes can be renamed for a while.
 
     Modifiers find vertex groups by name.
@@ -36,7 +40,7 @@ def check_names(obj: bpy.types.Object) -> None:
     ------
     AttributeNameError
     """
-    for name in display.ATTRIBUTES:
+    for name in attributes.names():
         if name in obj.vertex_groups:
             raise AttributeNameError(
                 f'"{obj.name}" has a vertex group named "{name}", as a baked attribute is named; '
@@ -44,8 +48,25 @@ def check_names(obj: bpy.types.Object) -> None:
             )
 
 
+def keeps_names(obj: bpy.types.Object, attributes: Attributes) -> bool:
+    """Return whether `obj` was baked in place and all that it carries of that bake is written anew or a frame's."""
+    names = {*attributes.names()}
+    written = (remembered.name for remembered in obj.radiosity.attributes)
+    return obj.radiosity.kind == BAKED_IN_PLACE and all(name in names or is_of_frame(name) for name in written)
+
+
+def is_of_frame(name: str) -> bool:
+    """Return whether an attribute of ours is that of one frame of a range."""
+    return _FRAME.search(name) is not None
+
+
 def store_in_place(
-    obj: bpy.types.Object, target: Target, baked: BakedMesh, displays: Displays, journal: Journal
+    obj: bpy.types.Object,
+    target: Target,
+    baked: BakedMesh,
+    attributes: Attributes,
+    displays: Displays,
+    journal: Journal,
 ) -> None:
     """Write the values of `baked` on the corners of the mesh of `obj`, and show them."""
     remember_record(obj, journal)
@@ -56,9 +77,9 @@ def store_in_place(
             obj.data
         )
     remember_active_attributes(obj.data, journal)
-    values = values_in_place(obj.data, target, baked)
+    values = values_in_place(obj.data, target, baked, attributes)
     make_room(obj, values, journal)
-    write_colours(obj.data, values)
+    write_colours(obj.data, values, attributes)
     _show(obj, baked.radiosity_back is not None, displays, journal)
 
 
@@ -77,9 +98,11 @@ def _own_mesh(obj: bpy.types.Object, journal: Journal) -> None:
     journal.set(obj, "data", own)
 
 
-def values_in_place(mesh: bpy.types.Mesh, target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
+def values_in_place(
+    mesh: bpy.types.Mesh, target: Target, baked: BakedMesh, attributes: Attributes
+) -> dict[str, Floats | None]:
     """Return the values of a baked mesh for the corners of the object's own mesh, by the name of the attribute."""
-    values = baked_values(baked)
+    values = attributes.values(baked)
     if target.same_corners:
         return {name: _gather_corners(part, target, len(mesh.loops)) for name, part in values.items()}
     carried = nearest_corners(local_mesh(mesh), target.local, {k: v for k, v in values.items() if v is not None})

@@ -10,7 +10,7 @@ from mathutils import Matrix
 
 from ..core.result import BakedMesh
 from ..core.scene import Floats
-from . import display
+from .attributes import Attributes
 from .changes import (
     in_view_layer,
     link,
@@ -38,13 +38,14 @@ def store_refined(
     source: bpy.types.Object,
     target: Target,
     baked: BakedMesh,
+    attributes: Attributes,
     displays: Displays,
     view_layer: bpy.types.ViewLayer,
     journal: Journal,
 ) -> bpy.types.Object:
     """Make the refined object of `source`, show it and hide `source`; return it."""
     inverse = inverse_of(target.matrix)
-    mesh = _refined_mesh(_output_name(source), target, baked, inverse, journal)
+    mesh = _refined_mesh(_output_name(source), target, baked, attributes, inverse, journal)
     _give_slots(mesh, source, target, baked, displays)
     output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
     if target.layers is not None:
@@ -65,7 +66,12 @@ def _output_name(source: bpy.types.Object) -> str:
 
 
 def _refined_mesh(
-    name: str, target: Target, baked: BakedMesh, inverse: Floats | None, journal: Journal
+    name: str,
+    target: Target,
+    baked: BakedMesh,
+    attributes: Attributes,
+    inverse: Floats | None,
+    journal: Journal,
 ) -> bpy.types.Mesh:
     order = _corner_order(target)
     triangles = baked.triangles[:, order]
@@ -82,8 +88,9 @@ def _refined_mesh(
     mesh.polygons.foreach_set("material_index", target.local.slots[baked.parent_triangle].astype(np.int32))
     mesh.update(calc_edges=True)
     if target.layers is not None:
-        carry(mesh, target.layers, _subdivision(target, baked), _name_beside_ours)
-    write_colours(mesh, values_of_corners(target, baked))
+        beside = {name: f"{name} (before bake)" for name in attributes.names()}
+        carry(mesh, target.layers, _subdivision(target, baked), lambda name: beside.get(name, name))
+    write_colours(mesh, values_of_corners(target, baked, attributes), attributes)
     _shade(mesh, vertices, triangles, normals[:, order])
     return mesh
 
@@ -99,32 +106,18 @@ def _subdivision(target: Target, baked: BakedMesh) -> Subdivision:
     )
 
 
-def _name_beside_ours(name: str) -> str:
-    return f"{name} (before bake)" if name in display.ATTRIBUTES else name
-
-
 def _corner_order(target: Target) -> list[int]:
     """Return the order of a refined triangle's corners on the mesh of its object."""
     # Blender turns the faces of a mirrored object over, as the extraction did; in local space they turn back.
     return [0, 2, 1] if target.flipped and inverse_of(target.matrix) is not None else [0, 1, 2]
 
 
-def values_of_corners(target: Target, baked: BakedMesh) -> dict[str, Floats | None]:
+def values_of_corners(target: Target, baked: BakedMesh, attributes: Attributes) -> dict[str, Floats | None]:
     """Return the values of a baked mesh for the corners of its refined object's mesh, by the name of the attribute."""
     order = _corner_order(target)
     return {
         name: None if values is None else values[:, order].reshape(-1, 3)
-        for name, values in baked_values(baked).items()
-    }
-
-
-def baked_values(baked: BakedMesh) -> dict[str, Floats | None]:
-    """Return the values of a baked mesh by the name of their attribute, None where there are none."""
-    return {
-        display.RADIOSITY: baked.radiosity,
-        display.IRRADIANCE: baked.irradiance,
-        display.RADIOSITY_BACK: baked.radiosity_back,
-        display.IRRADIANCE_BACK: baked.irradiance_back,
+        for name, values in attributes.values(baked).items()
     }
 
 

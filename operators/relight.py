@@ -15,6 +15,7 @@ from ..core.relight import KeptTransport, NotKept, relight
 from ..core.result import BakedMesh, BakeResult
 from ..core.settings import BakeSettings
 from . import display
+from .attributes import Attributes, attributes_of
 from .bake import RADIOSITY_OT_bake, counted, shown_report, way_to_object_mode
 from .colours import rewrite_colours
 from .extraction import Extraction, extract
@@ -57,11 +58,12 @@ def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_pr
     read = time.perf_counter() - began
     result = relight(bake.transport, extraction.scene, progress)
     began = time.perf_counter()
+    attributes, exposure = attributes_of(bake.settings, extraction.scene, result)
     if bake.settings.output == "ORIGINAL":
-        objects, cautions = store(scene, extraction, result, bake.settings)
+        objects, cautions = store(scene, extraction, result, attributes)
     else:
-        objects, cautions = _store_in_refined(bake, extraction, result), []
-    report = shown_report(extraction, result, objects, cautions, read, time.perf_counter() - began)
+        objects, cautions = _store_in_refined(bake, extraction, result, attributes), []
+    report = shown_report(extraction, result, objects, cautions, exposure, read, time.perf_counter() - began)
     scene.radiosity.report = json.dumps(report)
     return report
 
@@ -82,7 +84,9 @@ def _originals(bake: RememberedBake) -> list[bpy.types.Object]:
     return [by_uid[obj.uid] for obj in bake.objects]
 
 
-def _store_in_refined(bake: RememberedBake, extraction: Extraction, result: BakeResult) -> list[bpy.types.Object]:
+def _store_in_refined(
+    bake: RememberedBake, extraction: Extraction, result: BakeResult, attributes: Attributes
+) -> list[bpy.types.Object]:
     """Write the values on the corners of the refined meshes; returns the refined objects.
 
     Raises
@@ -99,18 +103,20 @@ def _store_in_refined(bake: RememberedBake, extraction: Extraction, result: Bake
                 raise NotRelightableError(f'The mesh of "{output.name}" was edited since the bake; bake again')
             found.append((output, target, baked))
     with Journal() as journal:
-        displays = Displays(bake.settings.material, journal)
+        displays = Displays(attributes, journal)
         for output, target, baked in found:
-            rewrite_colours(output.data, values_of_corners(target, baked), journal)
-            _show(output, target, displays, journal)
+            rewrite_colours(output.data, values_of_corners(target, baked, attributes), attributes, journal)
+            _show(output, target, attributes, displays, journal)
         journal.later(display.remove_unused_display_materials)
         journal.later(displays.take_names)
     return [output for output, _, _ in found]
 
 
-def _show(output: bpy.types.Object, target: Target, displays: Displays, journal: Journal) -> None:
+def _show(
+    output: bpy.types.Object, target: Target, attributes: Attributes, displays: Displays, journal: Journal
+) -> None:
     """Have the materials show the backs once they have colours, and the originals' colours as they are now."""
-    both_sides = display.RADIOSITY_BACK in output.data.color_attributes
+    both_sides = attributes.name(attributes.quantity_shown(), back=True) in output.data.color_attributes
     originals = original_materials(target, len(output.material_slots))
     for slot, original in zip(output.material_slots, originals, strict=True):
         if display.is_display(slot.material):

@@ -210,8 +210,8 @@ def restore_attributes(obj: bpy.types.Object, journal: Journal) -> None:
     before = (record.active_attribute, record.active_color, record.default_color)
     remember_active_attributes(mesh, journal)
     # Backwards, so that taking it back makes them in their order.
-    sets = [attribute.name for attribute in record.attributes if attribute.name not in display.ATTRIBUTES]
-    for name in (name for name in reversed((*display.ATTRIBUTES, *sets)) if name in record.attributes):
+    ours = [attribute.name for attribute in record.attributes]
+    for name in sorted(ours, key=mesh.attributes.find, reverse=True):
         attribute = record.attributes[name]
         if attribute.name in mesh.color_attributes:
             remove_attribute(mesh, attribute.name, journal)

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import bpy
 import numpy as np
 
-from . import display
+from .attributes import Attributes
 from .changes import remember_active_attributes, remember_record, remove_attribute
 from .colours import write_colours
-from .in_place import make_room
+from .in_place import is_of_frame, make_room
 from .journal import Journal
 from .record import BAKED_IN_PLACE
 
@@ -20,7 +20,9 @@ def name_of_set(name: str, frame: int) -> str:
     return f"{name}.{frame:04d}"
 
 
-def add_sets(obj: bpy.types.Object, sets: Mapping[int, Mapping[str, np.ndarray]], journal: Journal) -> None:
+def add_sets(
+    obj: bpy.types.Object, sets: Mapping[int, Mapping[str, np.ndarray]], attributes: Attributes, journal: Journal
+) -> None:
     """Write the attributes of every frame on the mesh of a baked object, in place of those of an earlier range.
 
     Parameters
@@ -37,7 +39,7 @@ def add_sets(obj: bpy.types.Object, sets: Mapping[int, Mapping[str, np.ndarray]]
         remember_record(obj, journal)
         remember_active_attributes(obj.data, journal)
         make_room(obj, values, journal)
-    write_colours(obj.data, values)
+    write_colours(obj.data, values, attributes)
 
 
 def without_sets(obj: bpy.types.Object, _uid: int, journal: Journal) -> None:
@@ -49,7 +51,7 @@ def without_sets(obj: bpy.types.Object, _uid: int, journal: Journal) -> None:
 def remove_sets(obj: bpy.types.Object, journal: Journal) -> None:
     """Remove the sets of an earlier range from an object that was baked in place."""
     mesh = obj.data
-    names = [remembered.name for remembered in obj.radiosity.attributes if remembered.name not in display.ATTRIBUTES]
+    names = [remembered.name for remembered in obj.radiosity.attributes if is_of_frame(remembered.name)]
     for name in names:
         if name in mesh.color_attributes:
             remove_attribute(mesh, name, journal)

@@ -7,7 +7,7 @@ from dataclasses import asdict
 import bpy
 import numpy as np
 
-from ..core.settings import BakeSettings
+from ..core.settings import LONGEST_PREFIX, BakeSettings
 
 DEFAULTS = BakeSettings()
 
@@ -49,6 +49,32 @@ MATERIAL_ITEMS = (
         "With Textures",
         "A copy of each of your materials multiplies the baked light with its colours and textures, which stay sharp "
         "in renders and in exported glTF files",
+    ),
+)
+LIGHT_ITEMS = (
+    ("ALL", "Everything", "All light: Radiosity with the surfaces' own colours, and Irradiance without them"),
+    (
+        "IRRADIANCE",
+        "Lighting Only",
+        "All light, but only Irradiance, without the surfaces' own colours: for textures of your own",
+    ),
+    ("DIRECT", "Direct Only", "Only the light that comes straight from lamps, glowing faces and the World"),
+    ("INDIRECT", "Indirect Only", "Only the light that other surfaces reflect: to be added to lamps in a game engine"),
+)
+DOMAIN_ITEMS = (
+    ("CORNER", "Face Corners", "A colour for each corner of each face, so that edges and material borders stay sharp"),
+    (
+        "POINT",
+        "Vertices",
+        "One colour for each vertex, the mean of its corners: smaller, but colours run over hard edges",
+    ),
+)
+DATA_TYPE_ITEMS = (
+    ("FLOAT", "Float", "32 bits a channel: light of any brightness, as it is"),
+    (
+        "BYTE",
+        "Byte",
+        "8 bits a channel: a quarter of the memory. Brightness is scaled to fit, and the report says by how much",
     ),
 )
 
@@ -141,6 +167,54 @@ class RadiositySettings(bpy.types.PropertyGroup):
         default=DEFAULTS.keep_transport,
         options=set(),
     )
+    light: bpy.props.EnumProperty(
+        name="Light",
+        description="Which part of the light is stored",
+        items=LIGHT_ITEMS,
+        default=DEFAULTS.light,
+        options=set(),
+    )
+    light_groups: bpy.props.BoolProperty(
+        name="Light Groups",
+        description=(
+            "Store the light of each of Blender's light groups in a colour attribute of its own, too, "
+            "and that of everything without a group in one more; they sum up to the whole"
+        ),
+        default=DEFAULTS.light_groups,
+        options=set(),
+    )
+    domain: bpy.props.EnumProperty(
+        name="Domain",
+        description="What the colours are stored on",
+        items=DOMAIN_ITEMS,
+        default=DEFAULTS.domain,
+        options=set(),
+    )
+    data_type: bpy.props.EnumProperty(
+        name="Data Type",
+        description="How the colours are stored",
+        items=DATA_TYPE_ITEMS,
+        default=DEFAULTS.data_type,
+        options=set(),
+    )
+    byte_maximum: bpy.props.FloatProperty(
+        name="Byte Maximum",
+        description=(
+            "Brightness that bytes reach up to; what is brighter is cut off. "
+            "0 takes the brightest that was baked, so that nothing is; set it to have several bakes alike"
+        ),
+        default=DEFAULTS.byte_maximum,
+        min=0.0,
+        soft_max=100.0,
+        options=set(),
+    )
+    prefix: bpy.props.StringProperty(
+        name="Prefix",
+        description="What the names of the colour attributes begin with, such as 'Night ' for 'Night Radiosity'",
+        default=DEFAULTS.prefix,
+        maxlen=LONGEST_PREFIX,
+        options=set(),
+    )
     material: bpy.props.EnumProperty(
         name="Material",
         description="How the baked objects look; Restore brings your own materials back",
@@ -188,6 +262,12 @@ def bake_settings(properties: RadiositySettings) -> BakeSettings:
         threads=properties.threads,
         memory_limit=properties.memory_limit,
         keep_transport=properties.keep_transport,
+        light=properties.light,
+        light_groups=properties.light_groups,
+        domain=properties.domain,
+        data_type=properties.data_type,
+        byte_maximum=_as_typed(properties.byte_maximum),
+        prefix=properties.prefix,
         material=properties.material,
     )
 

@@ -8,14 +8,13 @@ import bpy
 
 from ..core.errors import BakeError
 from ..core.result import BakeResult
-from ..core.settings import BakeSettings
 from . import display
+from .attributes import Attributes
 from .extraction import Extraction
-from .in_place import check_names, store_in_place
+from .in_place import check_names, keeps_names, store_in_place
 from .journal import Journal
 from .local_mesh import fingerprint
 from .places import same_place
-from .record import BAKED_IN_PLACE
 from .refined import store_refined
 from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
@@ -32,15 +31,14 @@ def store(
     scene: bpy.types.Scene,
     extraction: Extraction,
     result: BakeResult,
-    settings: BakeSettings,
+    attributes: Attributes,
     beside: Beside | None = None,
 ) -> tuple[list[bpy.types.Object], list[str]]:
     """Write `result` into the file in place of any earlier bake of the same objects.
 
     Parameters
     ----------
-    settings : BakeSettings
-        Of which `output` and `material` are heeded.
+    attributes : Attributes
     beside : callable, optional
         Writes more on each object that carries the colours, given with the `session_uid` of its original.
 
@@ -57,27 +55,27 @@ def store(
     AttributeNameError
         See `check_storable`.
     """
-    output = settings.output
+    output = attributes.settings.output
     view_layer = scene.view_layers.get(extraction.view_layer)
     if view_layer is None:
         raise ChangedMeanwhileError(
             f'The view layer "{extraction.view_layer}" was removed or renamed during the bake; nothing was stored'
         )
-    check_storable(extraction, output)
+    check_storable(extraction, attributes)
     pairs = baked_targets(extraction.scene, extraction.targets, result)
     found = _find([target for target, _ in pairs], view_layer)
     warnings = [sentence for target, obj in found for sentence in _cautions(target, obj, output)]
     baked_objects = []
     with Journal() as journal:
-        displays = Displays(settings.material, journal)
+        displays = Displays(attributes, journal)
         for (target, obj), (_, baked) in zip(found, pairs, strict=True):
             # A second bake in place only needs new values; what the first one remembers stays true.
-            if not (output == "ORIGINAL" and obj.radiosity.kind == BAKED_IN_PLACE):
+            if not (output == "ORIGINAL" and keeps_names(obj, attributes)):
                 restore_object(obj, view_layer, journal)
             if output == "REFINED":
-                baked_objects.append(store_refined(obj, target, baked, displays, view_layer, journal))
+                baked_objects.append(store_refined(obj, target, baked, attributes, displays, view_layer, journal))
             else:
-                store_in_place(obj, target, baked, displays, journal)
+                store_in_place(obj, target, baked, attributes, displays, journal)
                 baked_objects.append(obj)
             if beside is not None:
                 beside(baked_objects[-1], target.uid, journal)
@@ -86,7 +84,7 @@ def store(
     return baked_objects, warnings
 
 
-def check_storable(extraction: Extraction, output: str) -> None:
+def check_storable(extraction: Extraction, attributes: Attributes) -> None:
     """Refuse what could not be stored in the end, before time is spent on it.
 
     Raises
@@ -94,12 +92,12 @@ def check_storable(extraction: Extraction, output: str) -> None:
     AttributeNameError
         When an object that shall be baked in place has a vertex group with the name of one of our attributes.
     """
-    if output != "ORIGINAL":
+    if attributes.settings.output != "ORIGINAL":
         return
     uids = {target.uid for target in extraction.targets}
     for obj in bpy.data.objects:
         if obj.session_uid in uids:
-            check_names(obj)
+            check_names(obj, attributes)
 
 
 def scene_of(extraction: Extraction) -> bpy.types.Scene:

@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..core.result import BakedMesh, BakeResult
+from ..core.result import BakedMesh, BakeResult, GroupLight
 from ..core.scene import Floats, Ints, Scene
 from .layers import Layers
 from .local_mesh import LocalMesh, inverse_of, placed
@@ -213,9 +213,24 @@ def _joined_values(scene: Scene, target: Target, baked: list[BakedMesh]) -> Bake
         ),
     }
     for field in fields(BakedMesh):
-        if field.name not in joined:
+        if field.name not in {*joined, "groups"}:
             joined[field.name] = _joined_corners([getattr(mesh, field.name) for mesh in baked], baked)
-    return BakedMesh(**joined)
+    return BakedMesh(**joined, groups=_joined_groups(baked))
+
+
+def _joined_groups(baked: list[BakedMesh]) -> tuple[GroupLight, ...]:
+    """Return the light groups of several meshes, which all have the same."""
+    of_group = zip(*(mesh.groups for mesh in baked), strict=True)
+    return tuple(
+        GroupLight(
+            groups[0].name,
+            *(
+                _joined_corners([getattr(group, field.name) for group in groups], baked)
+                for field in fields(GroupLight)[1:]
+            ),
+        )
+        for groups in of_group
+    )
 
 
 def _joined_corners(values: list[Floats | None], baked: list[BakedMesh]) -> Floats | None:

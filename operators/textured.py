@@ -6,11 +6,13 @@ Each is a copy of the original material whose shaders are exchanged for one emis
 other nodes that colours come from stay as they are.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 
 from . import display
+from .attributes import IRRADIANCE, Attributes
+from .display import Shown
 from .journal import Journal
 from .materials import GREY, NOT_DIFFUSE, uses_nodes
 
@@ -31,25 +33,6 @@ class UnsupportedShaderError(Exception):
 
 
 @dataclass(frozen=True)
-class Shown:
-    """What of a baked mesh a display material shows.
-
-    Attributes
-    ----------
-    front : str
-        Name of the attribute with the irradiance.
-    back : str or None
-        That of the back, if it is to be seen.
-    strength : float
-        What values of 1 in the attributes stand for.
-    """
-
-    front: str
-    back: str | None = None
-    strength: float = 1.0
-
-
-@dataclass(frozen=True)
 class _Look:
     """What a shader does to light, where it is opaque, and how opaque it is."""
 
@@ -59,33 +42,36 @@ class _Look:
 
 
 class Displays:
-    """The display materials of one bake, made as they are asked for.
+    """The display materials of one bake, made as they are asked for."""
 
-    Parameters
-    ----------
-    kind : str
-        `'PLAIN'` or `'TEXTURED'`.
-    """
-
-    def __init__(self, kind: str, journal: Journal) -> None:
-        self._kind, self._journal = kind, journal
+    def __init__(self, attributes: Attributes, journal: Journal) -> None:
+        self._attributes, self._journal = attributes, journal
         self._made: dict[tuple[bpy.types.Material | None, bool], bpy.types.Material] = {}
 
     def of(self, original: bpy.types.Material | None, both_sides: bool) -> bpy.types.Material:
         """Return the material that shows the bake on a surface with the material `original`."""
-        if self._kind == "PLAIN" or display.is_display(original):
-            return display.display_material(both_sides, self._journal)
+        if self._attributes.settings.material == "PLAIN" or display.is_display(original):
+            return self._plain(both_sides)
         key = (original, both_sides)
         if key not in self._made:
             try:
                 self._made[key] = self._textured(original, both_sides)
             except UnsupportedShaderError:
                 # Its colours are in the radiosity, one for each vertex.
-                self._made[key] = display.display_material(both_sides, self._journal)
+                self._made[key] = self._plain(both_sides)
         return self._made[key]
 
+    def _shown(self, quantity: str, both_sides: bool) -> Shown:
+        named = self._attributes
+        back = named.name(quantity, back=True) if both_sides else None
+        emits = named.settings.light != "INDIRECT"
+        return Shown(named.name(quantity), back, named.maxima[quantity], emits)
+
+    def _plain(self, both_sides: bool) -> bpy.types.Material:
+        return display.display_material(self._shown(self._attributes.quantity_shown(), both_sides), self._journal)
+
     def _textured(self, original: bpy.types.Material | None, both_sides: bool) -> bpy.types.Material:
-        shown = Shown(display.IRRADIANCE, display.IRRADIANCE_BACK if both_sides else None)
+        shown = self._shown(IRRADIANCE, both_sides)
         if original is None:
             material = display.new_material(_name(original), self._journal)
             show_on_grey(material, shown)
@@ -151,6 +137,8 @@ def _show(nodes: "_Nodes", look: _Look, shown: Shown, displacement: bpy.types.No
     The glTF exporter of Blender knows an unlit material by the switch for camera rays, and its vertex colours by one
     multiplication. Where that cannot hold all there is to see, the renderers get outputs of their own.
     """
+    if not shown.emits:
+        look = replace(look, emitted=_BLACK)
     front = irradiance = nodes.attribute(shown.front)
     if shown.back is not None:
         irradiance = nodes.mix(nodes.backfacing(), front, nodes.attribute(shown.back))

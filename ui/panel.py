@@ -87,7 +87,15 @@ class VIEW3D_PT_radiosity_output(_InSidebar, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.active = RADIOSITY_OT_bake.job is None
-        layout.prop(context.scene.radiosity, "material")
+        settings = context.scene.radiosity
+        layout.prop(settings, "material")
+        layout.prop(settings, "light")
+        layout.prop(settings, "light_groups")
+        layout.prop(settings, "domain")
+        layout.prop(settings, "data_type")
+        if settings.data_type == "BYTE":
+            layout.prop(settings, "byte_maximum")
+        layout.prop(settings, "prefix")
 
 
 class VIEW3D_PT_radiosity_result(_InSidebar, bpy.types.Panel):

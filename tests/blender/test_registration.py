@@ -52,6 +52,9 @@ def test_choices_are_those_of_core():
         (settings_module.QUALITY_ITEMS, core.QUALITIES),
         (settings_module.OUTPUT_ITEMS, core.OUTPUTS),
         (settings_module.MATERIAL_ITEMS, core.MATERIALS),
+        (settings_module.LIGHT_ITEMS, core.LIGHTS),
+        (settings_module.DOMAIN_ITEMS, core.DOMAINS),
+        (settings_module.DATA_TYPE_ITEMS, core.DATA_TYPES),
     ):
         assert tuple(item[0] for item in items) == names
 

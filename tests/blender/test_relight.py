@@ -293,13 +293,13 @@ def test_a_failure_in_the_middle_takes_back_what_was_written(room, monkeypatch):
     before = file_state()
     calls = []
 
-    def failing(mesh, values, journal):
+    def failing(mesh, values, attributes, journal):
         calls.append(mesh)
         if len(calls) == 2:
             raise RuntimeError("no more")
         from radiosity_bake.operators.colours import rewrite_colours
 
-        rewrite_colours(mesh, values, journal)
+        rewrite_colours(mesh, values, attributes, journal)
 
     monkeypatch.setattr("radiosity_bake.operators.relight.rewrite_colours", failing)
     with pytest.raises(RuntimeError, match="no more"):
