@@ -39,13 +39,10 @@ PICTURES = (
 )
 
 WHOLE_FILES = (
-    "Everything that renders is baked at GOOD to refined meshes, shown, and restored. Seconds are half of the "
-    "processor "
-    "time of the bake; a room has to take less than 60. The difference is that of the pictures, as a share of what "
-    "can be "
-    "shown. What Restore leaves is compared with what was there before: objects, meshes with all attributes, "
-    "materials, "
-    "collections; the file itself is not written."
+    "Everything that renders is baked at GOOD to refined meshes, shown with the textures of its materials, and "
+    "restored. Seconds are half of the processor time of the bake; a room has to take less than 60. The difference "
+    "is that of the pictures, as a share of what can be shown. What Restore leaves is compared with what was there "
+    "before: objects, meshes with all attributes, materials, collections; the file itself is not written."
 )
 
 
