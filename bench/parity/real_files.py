@@ -94,6 +94,8 @@ def measured(picture: Path) -> dict[str, Any]:
         row["seconds"] = round(time.perf_counter() - start, 2)
         row["processor_seconds"] = round(processor_seconds() - used, 2)
     except RuntimeError as error:
+        if "Traceback" in str(error):
+            raise  # no sentence for the user, but a mistake of ours
         return {**row, "said": str(error).strip().removeprefix("Error: "), "left": differences(before, state())[:5]}
     report = json.loads(bpy.context.scene.radiosity.report)
     row |= {key: report[key] for key in ("vertices", "warnings")}

@@ -37,7 +37,7 @@ def build() -> None:
     rug.modifiers.new("Thickness", "SOLIDIFY").thickness = 0.012
     stage.lamp("SUN", turn=(math.radians(0), math.radians(-58), math.radians(-12)), angle=0.00918, energy=4.0)
     parts.sky(math.radians(32), math.radians(90), 0.12)
-    stage.camera((1.85, -1.7, 1.55), (-0.9, 0.6, 0.8), 20.0)
+    stage.camera((0.8, -1.74, 1.6), (-0.75, 0.6, 0.85), 18.0)
 
 
 def _window(x: float) -> None:
