@@ -366,7 +366,7 @@ class _Reader:
             local = self._local_mesh(obj)
             if local is not None:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
-                materials = _slot_materials(obj, local)
+                materials = self._materials(obj, local)
                 self._colouring.read(obj, local, materials)
                 yield _Entry(order, original, owner, role, local, materials, matrix, layers, light_group)
         found = [(lamp, group) for _, lamp, group in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
@@ -406,6 +406,10 @@ class _Reader:
         for note in notes:
             self._users_of_lamp_note.setdefault(note, {})[obj.original.name] = None
         return lamp
+
+    def _materials(self, obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
+        override = self._participants.view_layer.material_override
+        return _slot_materials(obj, local) if override is None else (override,)
 
     def _local_mesh(self, obj: bpy.types.Object) -> LocalMesh | None:
         key = obj.data.as_pointer()

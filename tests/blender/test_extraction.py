@@ -185,6 +185,14 @@ def test_a_slot_of_the_object_overrides_the_one_of_the_mesh():
     assert the_mesh(extracted(plane), "Plane").reflectance[0] == pytest.approx([0.7, 0.7, 0.7])
 
 
+def test_the_material_override_of_the_view_layer_counts_for_all_faces():
+    cube = add_cube(materials=[diffuse_material("A"), emission_material()])
+    cube.data.polygons[5].material_index = 1
+    bpy.context.view_layer.material_override = diffuse_material("Clay", (0.5, 0.5, 0.5, 1.0))
+    mesh = the_mesh(extracted(cube), "Cube")
+    assert mesh.reflectance == pytest.approx(np.full((12, 3), 0.5)) and not mesh.emission.any()
+
+
 def test_an_empty_slot_and_no_slot_are_grey():
     assert the_mesh(extracted(add_plane("A", materials=[None])), "A").reflectance[0] == pytest.approx([0.8] * 3)
     assert the_mesh(extracted(add_plane("B")), "B").reflectance[0] == pytest.approx([0.8] * 3)
