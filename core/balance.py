@@ -79,6 +79,49 @@ class TriangleMeans:
 
 
 @dataclass(frozen=True, eq=False)
+class SkyShares:
+    """How the rays of elements that leave the scene are spread over the world's map.
+
+    Attributes
+    ----------
+    element, cell : (p,) int
+        An entry for each pair.
+    share : (p,) float
+        Of all valid rays of the element.
+    """
+
+    element: Ints
+    cell: Ints
+    share: Floats
+
+    def irradiance(self, count: int, radiance: Floats) -> Floats:
+        """Irradiance over pi of so many elements, (count, 3), by the radiance of the cells, (cells, 3)."""
+        columns = [np.bincount(self.element, weights=self.share * c[self.cell], minlength=count) for c in radiance.T]
+        return np.stack(columns, axis=1)
+
+
+def sky_shares(transport: Transport, number: Ints, escape: Floats) -> SkyShares:
+    """Count the rays of each element that leave towards each cell of the world's map.
+
+    Parameters
+    ----------
+    number : (elements,) int
+        Of the traced elements.
+    escape : (m,) float
+        Share of their rays that leave.
+    """
+    keys = []
+    for table in transport.tables:
+        row, ray = np.nonzero(table.hits == ESCAPED)
+        keys.append((number[table.element[row]] << 32) | table.root[row, ray])
+    key, count = np.unique(np.concatenate(keys), return_counts=True)
+    element, cell = key >> 32, key & 0xFFFFFFFF
+    # Rays that leave the scene are no short ones: all are the element's own, and none its twin's.
+    left = np.bincount(element, weights=count, minlength=len(escape))
+    return SkyShares(element, cell, count * (escape[element] / left[element]))
+
+
+@dataclass(frozen=True, eq=False)
 class Balance:
     """The traced elements and twins, numbered 0 to m - 1, and their form factors.
 
@@ -91,6 +134,8 @@ class Balance:
     exchange : Exchange
     escape : (m,) float
         Share of each element's rays that leave the scene.
+    sky : SkyShares or None
+        Where these leave it to, where the world has a map.
     areas : (m,) float
         Area that is not inside a solid.
     buried : (m,) float
@@ -103,6 +148,7 @@ class Balance:
     base: Ints
     exchange: Exchange
     escape: Floats
+    sky: SkyShares | None
     areas: Floats
     buried: Floats
     means: TriangleMeans
@@ -113,6 +159,12 @@ class Balance:
         """The same elements, with the reflectance and emission that `surfaces` have."""
         means = self.means
         return replace(self, reflectance=means.reflectance(surfaces), emission=means.emission(surfaces))
+
+    def from_world(self, world: Floats) -> Floats:
+        """Irradiance over pi of the elements by what their rays see of the world, (m, 3), without its suns."""
+        if self.sky is None:
+            return self.escape[:, None] * world
+        return self.sky.irradiance(len(self.escape), world)
 
 
 def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
@@ -136,6 +188,7 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         base,
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
+        sky_shares(transport, number, escape) if surfaces.world.ndim > 1 else None,
         tree.areas(base >> 1) * (1.0 - buried) * share,
         buried,
         means,
@@ -195,7 +248,7 @@ def unreflected_light(balance: Balance, direct: DirectLight, emitters: Emitters,
     """
     left = left_emission(surfaces, emitters)
     by_rays = balance.exchange.apply(balance.means.of(left))
-    return direct.irradiance(emitters.strengths) + by_rays + balance.escape[:, None] * surfaces.world
+    return direct.irradiance(emitters.strengths) + by_rays + balance.from_world(surfaces.world)
 
 
 def _direct_on(
@@ -249,7 +302,9 @@ def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Em
     return values
 
 
-def energy(balance: Balance, solution: Solution, from_lamps: Floats, surfaces: Surfaces) -> dict[str, float]:
+def energy(
+    balance: Balance, solution: Solution, from_lamps: Floats, from_suns: Floats, surfaces: Surfaces
+) -> dict[str, float]:
     """Where the power goes, in W summed over the channels (for lengths in metres).
 
     `imbalance` is what emission, world and lamps bring in less what is absorbed and what leaves, as a share of what
@@ -257,14 +312,14 @@ def energy(balance: Balance, solution: Solution, from_lamps: Floats, surfaces: S
 
     Parameters
     ----------
-    from_lamps : (m, 3) float, W m^-2 sr^-1
-        Irradiance over pi that elements get of lamps.
+    from_lamps, from_suns : (m, 3) float, W m^-2 sr^-1
+        Irradiance over pi that elements get of lamps, and of the suns that stand for parts of the world.
     """
     area = np.pi * balance.areas[:, None]
     # What light goes through takes none of it away.
     met = area * balance.means.of(surfaces.seen[:, None].astype(np.float64))
     emitted = float((area * balance.emission).sum())
-    world = float((met * balance.escape[:, None] * surfaces.world).sum())
+    world = float((met * (balance.from_world(surfaces.world) + from_suns)).sum())
     lamps = float((met * from_lamps).sum())
     reflected = float((met * solution.reflected).sum())
     absorbed = float((met * (1.0 - balance.reflectance) * solution.incident).sum())

@@ -158,20 +158,26 @@ class Radiance:
 
     Attributes
     ----------
-    values : (places + 3, 4) float32, W m^-2 sr^-1
+    values : (places + sky + 3, 4) float32, W m^-2 sr^-1
         Three channels by place, and 1 where a ray can see it: 0 for unlit sides, which rays meet that started inside
-        a solid.
+        a solid. After the places, the cells of the world's map, if there is one.
+    first_of_sky : int or None
+        Where these begin.
     """
 
     values: Singles
+    first_of_sky: int | None
 
     @staticmethod
     def of(cells: Cells, radiance: Floats, world: Floats) -> Radiance:
-        """Join the radiance of places (2 * cells and twins, 3) with that of the world (3,)."""
-        values = np.zeros((len(radiance) + SPECIAL, 4), dtype=np.float32)
-        values[:-SPECIAL, :3] = radiance
-        values[:-SPECIAL, 3] = 1.0
-        values[:-SPECIAL][cells.unlit] = 0.0
+        """Join the radiance of places (2 * cells and twins, 3) with that of the world, (3,) or (sky, 3)."""
+        sky = world if world.ndim > 1 else np.zeros((0, 3))
+        seen = np.concatenate([radiance, sky])
+        values = np.ones((len(seen) + SPECIAL, 4), dtype=np.float32)
+        values[:-SPECIAL, :3] = seen
+        values[: len(radiance)][cells.unlit] = 0.0
+        values[-SPECIAL:] = 0.0
         values[BELOW] = (0.0, 0.0, 0.0, 1.0)
-        values[ESCAPED] = (*world, 1.0)
-        return Radiance(values)
+        if world.ndim == 1:
+            values[ESCAPED] = (*world, 1.0)
+        return Radiance(values, len(radiance) if world.ndim > 1 else None)

@@ -22,7 +22,7 @@ from .lamps import lamp_light
 from .light_tree import LightTree, light_tree
 from .many_lights import light_of_many
 from .sampling import LATTICE_ERROR, Singles, hashed, ray_counts, sequence, triangle_lattice
-from .scene import Floats, Ints, Lamp
+from .scene import Floats, Ints, Lamp, SunLamp
 from .surfaces import Surfaces
 from .visibility import OFFSET, RayScene
 
@@ -89,10 +89,12 @@ class Emitters:
         """What weights of direct light count by, (k + l, 3): radiance of triangles, strength of lamps."""
         return np.concatenate([self.radiance, *(lamp.strength[None] for lamp in self.lamps)])
 
-    def lamps_alone(self) -> Floats:
-        """The strengths, with triangles that are dark, (k + l, 3)."""
+    def lamps_alone(self, of_world: bool) -> Floats:
+        """The strengths of those lamps that are the world's suns or of those that are not, and 0 for all else."""
         alone = self.strengths.copy()
+        chosen = [isinstance(lamp, SunLamp) and lamp.of_world for lamp in self.lamps]
         alone[: len(self.triangle)] = 0.0
+        alone[len(self.triangle) :][np.array(chosen, dtype=bool) != of_world] = 0.0
         return alone
 
     @cached_property

@@ -17,13 +17,14 @@ from .direct_light import DirectLight
 from .geometry import order_along_curve
 from .met_places import MetPlaces
 from .receivers import Receivers, taken_of_two
-from .rows import COVER_GAP
+from .rows import COVER_GAP, ESCAPED
 from .sampling import Singles, frames, hemisphere_lattice
 from .scene import Floats, Ints
 from .surfaces import HAIR
 from .transport import Transport
 from .visibility import OFFSET, Hits
 from .workers import Workers
+from .world import map_cells
 
 LEAST_COVERED_SHARE = 0.9
 """A receiver is covered when more of its rays than this end within `COVER_GAP` of its faces' size."""
@@ -185,8 +186,11 @@ def gather(
 
     def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
         part = slice(first, last)
-        found, below = _looked(transport, receivers, part, pattern)
+        found, directions, below = _looked(transport, receivers, part, pattern)
         places = cells.places(found)
+        if radiance.first_of_sky is not None:
+            left = np.flatnonzero(places == ESCAPED)
+            places[left] = radiance.first_of_sky + map_cells(directions[left])
         places[below] = BELOW
         places = places.reshape(last - first, counts.hemisphere)
         means, noise, valid = _mean_seen(radiance, places)
@@ -243,7 +247,7 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
 
     def work(first: int, last: int) -> NDArray[np.bool_]:
         part = slice(first, last)
-        found, _ = _looked(transport, receivers, part, pattern)
+        found, _, _ = _looked(transport, receivers, part, pattern)
         buried = (found.triangle >= 0) & transport.unlit_side[2 * found.triangle + found.back]
         distance = found.distance.reshape(last - first, rays)
         covered = _covered(transport, receivers.sizes[part], finest, distance)
@@ -272,8 +276,8 @@ def _mean_seen(radiance: Radiance, places: NDArray[np.int32]) -> tuple[Floats, F
 
 def _looked(
     transport: Transport, receivers: Receivers, part: slice, pattern: Singles
-) -> tuple[Hits, NDArray[np.bool_] | slice]:
-    """What the rays of receivers meet, (n * r,), and which of them started below their surface."""
+) -> tuple[Hits, Singles, NDArray[np.bool_] | slice]:
+    """What the rays of receivers meet, (n * r,), their directions, and which of them started below their surface."""
     rays = len(pattern)
     # All receivers take the same pattern: what it misses then changes slowly over a surface instead of mottling it, at
     # the same error.
@@ -283,11 +287,11 @@ def _looked(
     origins = np.repeat(transport.rays.local(receivers.points[part]) + lift * np.float32(OFFSET), rays, axis=0)
     found = transport.rays.first_hits(origins, directions)
     if not np.any(np.abs(normals - lift) > FLAT):
-        return found, slice(0)
+        return found, directions, slice(0)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.
     below = (directions.reshape(len(lift), rays, 3) @ lift[:, :, None]).ravel() <= 0.0
     found.distance[below] = np.inf
-    return found, below
+    return found, directions, below
 
 
 def _covered(transport: Transport, sizes: Floats, finest: float, distance: Singles) -> NDArray[np.bool_]:

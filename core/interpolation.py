@@ -19,6 +19,7 @@ from .met_places import MetPlaces
 from .patches import PatchTree
 from .sampling import Singles
 from .scene import Floats
+from .world import MAP_CELLS
 
 STEEP = 1.0
 """Difference between a face's corners, relative to their mean, above which a face that is a whole patch shows the
@@ -49,12 +50,13 @@ class PlacesOnFaces:
         self.tree, self.copied = tree, cells.copied
         count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
-        seen = np.zeros(count, dtype=bool)
+        # Behind the places come the cells of the world's map.
+        seen = np.zeros(count + MAP_CELLS, dtype=bool)
         # As indices, places take twice the memory, which is that of all gather rays: some at a time.
         for first in range(0, len(met), ROWS_AT_ONCE):
             some = met.between(first, first + ROWS_AT_ONCE)
             seen[some[some >= 0]] = True
-        seen[cells.copied] |= seen[count - len(cells.copied) :]
+        seen[cells.copied] |= seen[count - len(cells.copied) : count]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)
         cell = self.place >> 1
         self.side = (2 * leaf[cell] + (self.place & 1)).astype(np.int32)

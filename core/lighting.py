@@ -213,8 +213,8 @@ def result_of(
     meshes, warnings = meshes_of(asked)
     meshes = with_groups(meshes, [(group.name, meshes_of(group)[0]) for group in groups])
     error = shown.error(surfaces)
-    from_lamps = patches.direct.irradiance(patches.emitters.lamps_alone())
-    balance = energy(patches.balance, solution, from_lamps, surfaces)
+    from_lamps, from_suns = (patches.direct.irradiance(patches.emitters.lamps_alone(suns)) for suns in (False, True))
+    balance = energy(patches.balance, solution, from_lamps, from_suns, surfaces)
     clock.stop()
     report: dict[str, Any] = {
         **story.counts,

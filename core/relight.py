@@ -246,7 +246,9 @@ def check_shapes(kept: KeptTransport, scene: Scene) -> None:
     """
     lamps = kept.patches.emitters.lamps
     if len(scene.lamps) != len(lamps):
-        raise ChangedSceneError("Lamps were added, removed or hidden since the bake; bake again")
+        raise ChangedSceneError(
+            "Lamps, or bright parts of the World, were added, removed or hidden since the bake; bake again"
+        )
     if len(scene.meshes) + len(lamps) != len(kept.shapes):
         raise ChangedSceneError("Objects were added, removed or hidden since the bake; bake again")
     for part, shape, before in zip((*scene.meshes, *scene.lamps), shapes_of(scene), kept.shapes, strict=True):
@@ -277,6 +279,8 @@ def check_sources(kept: KeptTransport, scene: Scene, surfaces: Surfaces) -> None
     for lamp, earlier in zip(surfaces.lamps, before.lamps, strict=True):
         if lamp.strength.any() and not earlier.strength.any():
             raise ChangedSceneError(f'"{lamp.name}" gave no light when the scene was baked; bake again')
+    if scene.world.ndim > before.world.ndim:
+        raise ChangedSceneError("The World was the same to all sides when the scene was baked; bake again")
     if surfaces.world.any() and not before.world.any():
         raise ChangedSceneError("The World gave no light when the scene was baked; bake again")
 

@@ -36,7 +36,7 @@ class Rows:
     hits : (k, r) int32
         Element that each ray met, `ESCAPED` or `BURIED`.
     root : (k, r) int32
-        Coarse patch of each hit.
+        Coarse patch of each hit; cell of the world's map, if there is one, of each ray that left the scene.
     weights : (k, r, 2) float32
         Where on the coarse patch.
     distance : (k, r) float32

@@ -184,6 +184,8 @@ class SunLamp:
     strength : (3,) float, W m^-2
         Irradiance of a surface that faces it, in linear RGB.
     shadow : bool
+    of_world : bool
+        Whether it stands for a bright part of the world.
     """
 
     name: str
@@ -191,6 +193,7 @@ class SunLamp:
     angle: float
     strength: Floats
     shadow: bool = True
+    of_world: bool = False
 
 
 Lamp = PointLamp | AreaLamp | SunLamp
@@ -222,8 +225,8 @@ class Scene:
     ----------
     meshes : tuple of SurfaceMesh
         In a fixed order; results refer to them by index.
-    world : (3,) float, W m^-2 sr^-1
-        Radiance that a ray meets when it leaves the scene.
+    world : (3,) or (cells, 3) float, W m^-2 sr^-1
+        Radiance that a ray meets when it leaves the scene: the same in all directions, or a map of `core.world`.
     lamps : tuple of Lamp
         In a fixed order.
     light_groups : tuple of LightGroup

@@ -54,7 +54,7 @@ class Surfaces:
         Whether reflected light meets it, and whether it hides lamps and emitters.
     extent : float
         Largest edge of the bounding box.
-    world : (3,) float
+    world : (3,) or (cells, 3) float
     lamps : tuple of Lamp
         No strength is negative.
     warnings : tuple of str
@@ -118,7 +118,10 @@ class Surfaces:
     def recoloured(self, scene: Scene) -> Surfaces:
         """The same triangles, with the colours that they have in `scene`, whose meshes have the same shapes."""
         kept = np.split(self.input_triangle, np.searchsorted(self.mesh_of_triangle, np.arange(1, len(scene.meshes))))
-        return replace(self, **_colours(scene, kept))
+        colours = _colours(scene, kept)
+        if self.world.ndim > colours["world"].ndim:
+            colours["world"] = np.tile(colours["world"], (len(self.world), 1))
+        return replace(self, **colours)
 
 
 def signed_volumes(surfaces: Surfaces) -> Floats:

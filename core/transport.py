@@ -22,6 +22,7 @@ from .sampling import Patterns, Singles, frames, hashed, sequence, shifted, tria
 from .scene import Floats, Ints
 from .surfaces import Surfaces
 from .visibility import OFFSET, RayScene
+from .world import map_cells
 
 COVER_POINTS, COVER_RAYS, COVERED_RAYS = 16, 8, 7
 """Points of a patch that are tested, rays of each, and how many must be short; beside a wall half of them are, in the
@@ -201,7 +202,7 @@ class Transport:
         element : (n,) int32
             The leaf element met, `ESCAPED` or `BURIED`.
         root : (n,) int32
-            The coarse patch met, and on it
+            The coarse patch met, or the cell of the world's map, and on the patch
         weights : (n, 2) float32
         distance : (n,) float32
         """
@@ -215,6 +216,8 @@ class Transport:
             self.cover.tell_apart(element, found.distance)
         element[self.unlit_side[2 * triangle + found.back]] = BURIED
         element[missed] = ESCAPED
+        if self.surfaces.world.ndim > 1:
+            root[missed] = map_cells(directions[missed])
         return element, root, weights, found.distance
 
     def follow_splits(self) -> int:

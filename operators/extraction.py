@@ -16,12 +16,12 @@ from .display import is_display
 from .lamps import lamp_of
 from .layers import Layers, joined_layers, layers_of
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
-from .materials import world_radiance
 from .object_settings import Role, role_of
 from .participants import Participants, shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
 from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, source_of
 from .targets import Part, Target, joined_glow, joined_mesh, shows_surfaces
+from .world import world_light
 
 _UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
 
@@ -82,11 +82,16 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
     if not targets:
         raise NothingToBakeError(_nothing(skipped))
     warnings += [f'"{name}" was skipped: it {why.singular}' for why, names in skipped.items() for name in names]
-    world, notes = world_radiance(context.scene.world)
+    world = world_light(context.scene.world if view_layer.use_sky else None, context.scene.frame_current)
     warnings += reader.warnings()
-    warnings += [f'World "{context.scene.world.name}": {note}' for note in notes]
+    warnings += [f'World "{context.scene.world.name}": {note}' for note in world.notes]
     return Extraction(
-        Scene(tuple(reader.meshes), world, tuple(reader.lamps), reader.light_groups(context.scene.world)),
+        Scene(
+            tuple(reader.meshes),
+            world.radiance,
+            (*reader.lamps, *world.suns),
+            reader.light_groups(context.scene.world, len(world.suns)),
+        ),
         targets,
         tuple(warnings),
         tuple(reader.evaluated()),
@@ -279,15 +284,22 @@ class _Reader:
             self._add(entry, appearance)
         self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
 
-    def light_groups(self, world: bpy.types.World | None) -> tuple[LightGroup, ...]:
-        """Return the light groups that something which gives light is in, in the order of their names."""
+    def light_groups(self, world: bpy.types.World | None, suns: int) -> tuple[LightGroup, ...]:
+        """Return the light groups that something which gives light is in, in the order of their names.
+
+        Parameters
+        ----------
+        suns : int
+            Lamps after those that were read, which stand for parts of the world.
+        """
         of_world = world.lightgroup if world is not None else ""
+        groups_of_lamps = [*self._groups_of_lamps, *[of_world] * suns]
         named = {group for group, mesh in zip(self._groups_of_meshes, self.meshes, strict=True) if mesh.emits()}
         return tuple(
             LightGroup(
                 name,
                 frozenset(index for index, group in enumerate(self._groups_of_meshes) if group == name),
-                frozenset(index for index, group in enumerate(self._groups_of_lamps) if group == name),
+                frozenset(index for index, group in enumerate(groups_of_lamps) if group == name),
                 of_world == name,
             )
             for name in sorted(named.union(self._groups_of_lamps, [of_world]) - {""})

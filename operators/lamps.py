@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..core.scene import AreaLamp, Cone, Floats, Lamp, PointLamp, SunLamp
-from .materials import lamp_factor
+from .materials import constant_emission, uses_nodes
 
 SMALLEST_SPREAD = np.radians(1.0)
 """Radians: at 0 the light of an area lamp is parallel, and all of it would leave in a direction that no ray meets."""
@@ -32,7 +32,7 @@ def lamp_of(obj: bpy.types.Object, matrix: Floats) -> tuple[Lamp | None, tuple[s
         return None, ()
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
         return None, ()
-    factor, notes = lamp_factor(light)
+    factor, notes = constant_emission(light) if uses_nodes(light) else (np.ones(3), ())
     notes = (*notes, *_limits(light))
     linking = obj.light_linking
     if linking.receiver_collection is not None or linking.blocker_collection is not None:

@@ -112,36 +112,15 @@ def material_surface(material: bpy.types.Material | None) -> Surface:
     return shader
 
 
-def world_radiance(world: bpy.types.World | None) -> tuple[Colour, tuple[str, ...]]:
-    """Return the radiance of a constant world, and what was skipped of any other.
+def constant_emission(owner: bpy.types.World | bpy.types.Light) -> tuple[Colour, tuple[str, ...]]:
+    """Return what the nodes of a world or lamp emit as far as they are constants, and what was skipped of them.
 
     Returns
     -------
-    radiance : (3,) float, W m^-2 sr^-1
-        Zero for a scene without a world and for a world with textures.
+    emission : (3,) float
     notes : tuple of str
     """
-    if world is None:
-        return np.zeros(3), ()
-    if not uses_nodes(world):
-        return np.array(world.color[:3], dtype=np.float64), ()
-    shader = _ShaderReader(world.node_tree).surface()
-    if shader.notes:
-        return np.zeros(3), tuple(f"{note.split(';')[0]}; the world was left dark" for note in shader.notes)
-    return shader.emission, ()
-
-
-def lamp_factor(light: bpy.types.Light) -> tuple[Colour, tuple[str, ...]]:
-    """Return what a lamp's nodes multiply its colour and power by, and what was skipped of them.
-
-    Returns
-    -------
-    factor : (3,) float
-    notes : tuple of str
-    """
-    if not uses_nodes(light):
-        return np.ones(3), ()
-    shader = _ShaderReader(light.node_tree).surface()
+    shader = _ShaderReader(owner.node_tree).surface()
     return shader.emission, shader.notes
 
 

@@ -5,7 +5,7 @@
 import bpy
 import numpy as np
 import pytest
-from radiosity_bake.operators.materials import GREY, material_surface, world_radiance
+from radiosity_bake.operators.materials import GREY, material_surface
 
 from tests.blender.making import (
     diffuse_material,
@@ -167,43 +167,6 @@ def test_a_colour_brighter_than_white_is_white():
     assert "white" in note
 
 
-def test_no_world_is_dark():
-    radiance, notes = world_radiance(None)
-    assert radiance.tolist() == [0.0, 0.0, 0.0]
-    assert notes == ()
-
-
-def test_a_constant_background_is_colour_times_strength():
-    world = bpy.data.worlds.new("Sky")
-    tree = node_tree(world)
-    background = tree.nodes.new("ShaderNodeBackground")
-    background.inputs["Color"].default_value = (0.5, 0.25, 1.0, 1.0)
-    background.inputs["Strength"].default_value = 2.0
-    link_surface(tree, background)
-    radiance, notes = world_radiance(world)
-    assert radiance == pytest.approx([1.0, 0.5, 2.0])
-    assert notes == ()
-
-
-def test_a_world_without_nodes_has_its_colour():
-    if bpy.app.version >= (5, 0, 0):
-        pytest.skip("from Blender 5.0 on every world has nodes")
-    world = bpy.data.worlds.new("Plain")
-    world.color = (0.1, 0.2, 0.3)
-    assert world_radiance(world)[0] == pytest.approx([0.1, 0.2, 0.3])
-
-
-def test_a_textured_world_is_left_dark_and_named():
-    world = bpy.data.worlds.new("Photo")
-    tree = node_tree(world)
-    background, image = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeTexEnvironment")
-    tree.links.new(image.outputs[0], background.inputs["Color"])
-    link_surface(tree, background)
-    radiance, (note,) = world_radiance(world)
-    assert radiance.tolist() == [0.0, 0.0, 0.0]
-    assert "Environment Texture" in note and "dark" in note
-
-
 @pytest.mark.parametrize("strength", ["Strength", "Emission_Strength"])
 def test_a_negative_emission_counts_as_none_and_is_named(strength):
     node = "ShaderNodeEmission" if strength == "Strength" else "ShaderNodeBsdfPrincipled"
@@ -212,17 +175,6 @@ def test_a_negative_emission_counts_as_none_and_is_named(strength):
     surface = material_surface(material)
     assert surface.emission.tolist() == [0.0, 0.0, 0.0]
     assert surface.notes == ("its emission is negative; it was taken for zero",)
-
-
-def test_a_world_of_negative_strength_is_left_dark_and_named():
-    world = bpy.data.worlds.new("Night")
-    tree = node_tree(world)
-    background = tree.nodes.new("ShaderNodeBackground")
-    background.inputs["Strength"].default_value = -1.0
-    link_surface(tree, background)
-    radiance, notes = world_radiance(world)
-    assert radiance.tolist() == [0.0, 0.0, 0.0]
-    assert notes == ("its emission is negative; the world was left dark",)
 
 
 def test_a_transparent_material_lets_light_through_and_one_in_part_does_not():

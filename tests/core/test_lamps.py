@@ -253,8 +253,8 @@ def test_relighting_gives_what_a_bake_with_the_lamps_new_colour_gives():
     [
         (lambda lamp: (replace(lamp, centre=lamp.centre + 0.1),), '"ball" was changed or moved'),
         (lambda lamp: (replace(lamp, cone=Cone(np.eye(3), 0.5, 0.1)),), '"ball" was changed or moved'),
-        (lambda lamp: (), "Lamps were added, removed or hidden"),
-        (lambda lamp: (lamp, lamp), "Lamps were added, removed or hidden"),
+        (lambda lamp: (), "Lamps, or bright parts of the World, were added, removed or hidden"),
+        (lambda lamp: (lamp, lamp), "Lamps, or bright parts of the World, were added, removed or hidden"),
     ],
 )
 def test_a_lamp_that_is_not_the_one_that_was_baked_is_refused(changed, sentence):
