@@ -5,7 +5,7 @@ PYTHON ?= python3
 MAIN := .venv/main/bin/python
 
 .DEFAULT_GOAL := help
-.PHONY: help venv zip demo test test-core test-blender bench parity compare lint format clean
+.PHONY: help venv zip demo web test test-core test-blender bench parity compare lint format clean
 
 help: ## Say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
@@ -32,6 +32,11 @@ ifdef BLENDER
 else
 	@$(MAIN) -m tools.run_tests "blender py"
 endif
+
+WEB ?= out/demo/cornell_box_baked.blend
+
+web: venv ## Show a baked .blend or a .glb in a web page and keep a browser's picture of it, in out/web
+	@$(MAIN) -m tools.web $(WEB)
 
 # make bench BENCH="--scene statue --answers fresh" measures one scene, and the other programs again; --help tells more.
 bench: ## Compare with other programs: accuracy, seconds, charts, docs/performance.md
