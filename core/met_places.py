@@ -61,9 +61,9 @@ class MetPlaces:
         """Those of the receivers from `first` up to `last`, (last - first, rays)."""
         row = self.row[first:last]
         found = np.empty((len(row), self.rays), dtype=np.int32)
-        begin = 0
-        for table in self.tables:
-            here = np.flatnonzero((row >= begin) & (row < begin + len(table)))
-            found[here] = table[row[here] - begin]
-            begin += len(table)
+        ends = np.cumsum([len(table) for table in self.tables])
+        among = np.searchsorted(ends, row, side="right")
+        for k in np.flatnonzero(np.bincount(among)) if self.tables else ():
+            here = np.flatnonzero(among == k)
+            found[here] = self.tables[k].take(row[here] - (ends[k] - len(self.tables[k])), axis=0)
         return found
