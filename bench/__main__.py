@@ -18,7 +18,7 @@ from typing import Any
 
 from radiosity_bake.core.settings import QUALITIES, BakeSettings
 
-from . import form_factors, publish
+from . import form_factors, profile, publish, scaling
 from .accuracy import compare
 from .machine import OUT, write_json
 from .measure import Judged, Measured, by_form_factors_alone, judged, measure, operator_costs
@@ -159,6 +159,8 @@ def main() -> None:
             measure_scene(name, asked, run)
         if not asked.scene:
             form_factors.write()
+            profile.write()
+            scaling.write()
     whole = not (asked.scene or asked.quality or asked.peer or asked.parts or asked.page_only)
     for path in publish.write_all(OUT, docs=whole or asked.publish):
         print(path)

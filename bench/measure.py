@@ -98,18 +98,31 @@ def judged(name: str, probes: int = 4000, parts: int = 0) -> Judged:
 
 def operator_costs(case: Judged, qualities: Sequence[str]) -> dict[str, dict[str, Any]]:
     """Return what Blender's operator took for each quality, from mesh to mesh, and what it counted."""
-    arrays: dict[str, np.ndarray] = {"world": case.scene.world}
-    for k, mesh in enumerate(case.scene.meshes):
+    with tempfile.TemporaryDirectory() as folder:
+        return run_operator(case.scene, qualities, Path(folder))
+
+
+def run_operator(scene: Scene, qualities: Sequence[str], folder: Path, warm: bool = True) -> dict[str, dict[str, Any]]:
+    """Bake a scene by Blender's operator in a process of its own: what each quality took, what it counted.
+
+    Parameters
+    ----------
+    folder : Path
+        For the scene's file.
+    warm : bool
+        Whether a bake that does not count comes first, as it also pays for loading libraries.
+    """
+    arrays: dict[str, np.ndarray] = {"world": scene.world}
+    for k, mesh in enumerate(scene.meshes):
         arrays[f"vertices_{k}"], arrays[f"triangles_{k}"] = mesh.vertices, mesh.triangles
         arrays[f"reflectance_{k}"], arrays[f"emission_{k}"] = mesh.reflectance, mesh.emission
         normals = mesh.corner_normals
         arrays[f"smooth_{k}"] = np.any(np.abs(normals - normals[:, :1]) > FLAT, axis=(1, 2))
-    with tempfile.TemporaryDirectory() as folder:
-        given = Path(folder) / "scene.npz"
-        np.savez(given, **arrays)
-        script = Path(__file__).with_name("operator_bake.py")
-        command = [sys.executable, str(script), str(given), *qualities]
-        done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
+    given = folder / "scene.npz"
+    np.savez(given, **arrays)
+    script = Path(__file__).with_name("operator_bake.py")
+    command = [sys.executable, str(script), *([] if warm else ["--cold"]), str(given), *qualities]
+    done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
     return {found["quality"]: found for found in json.loads(done.stdout.splitlines()[-1])}
 
 

@@ -22,11 +22,13 @@ KEPT += ("points", "patches", "rays", "run")
 
 
 def collect(out: Path) -> Document:
-    """Return everything that lies in `out`: scenes, form factors and the paper's table, each if it was measured."""
+    """Return everything that lies in `out`, each if it was measured: scenes and the tables of other commands."""
     scenes = [read(out / "bench" / f"{name}.json") for name in BENCH_SCENES]
     return {
         "scenes": [{**scene, "results": [kept(e) for e in scene["results"]]} for scene in scenes if scene],
         "form_factors": read(out / "form_factors.json"),
+        "scaling": read(out / "scaling.json"),
+        "profile": read(out / "profile.json"),
         "paper_table": read(out / "compare.json"),
     }
 

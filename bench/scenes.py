@@ -299,12 +299,11 @@ def pillar_hall(rows: int = 10) -> Scene:
     return Scene(tuple(meshes), DARKNESS)
 
 
-def statue(levels: int = 6) -> Scene:
-    """A statue of about 30 * 4^levels triangles (122,112) on a plinth in a closed room, with folds and hollows.
+def statue(around: int = 384, along: int = 160) -> Scene:
+    """A statue of 2 * around * (along - 1) triangles (122,112) on a plinth in a closed room, with folds and hollows.
 
     Three swellings along a bent column: a closed surface of revolution, disturbed by smooth twisted waves.
     """
-    around, along = 6 * 2**levels, 5 * 2 ** (levels - 1)
     angle = 2.0 * np.pi * np.arange(around) / around
     share = np.linspace(0.0, 1.0, along + 1)[1:-1]
     t, a = (x.ravel() for x in np.meshgrid(share, angle, indexing="ij"))

@@ -12,6 +12,8 @@ from .goals import goals
 from .introduction import introduction
 from .own_bakes import growth, own_bakes
 from .paper_table import paper_table
+from .profile import profile
+from .scaling import scaling
 
 
 def page(document: Document) -> str:
@@ -19,7 +21,12 @@ def page(document: Document) -> str:
     parts = [introduction(document)]
     if document["scenes"]:
         parts += [goals(document), equal_error(document), vertices(document), own_bakes(document)]
+    if document.get("profile"):
+        parts += [profile(document["profile"])]
+    if document["scenes"]:
         parts += [growth(document)]
+    if document.get("scaling"):
+        parts += [scaling(document["scaling"])]
     if document["form_factors"]:
         parts += [form_factors(document["form_factors"]["results"])]
     if document["paper_table"]:

@@ -17,6 +17,7 @@ from ..methods import (
 )
 from ..results import Document, of_method, own_bake, ray_share, title
 from .equal_error import COMPARED_QUALITIES, faster_by_both, fewer_vertices
+from .limits import limits
 from .markdown import Lines, paragraph, percent, table, times
 
 
@@ -64,6 +65,8 @@ def goals(document: Document) -> Lines:
         ),
         "",
         *table(("goal", "worst measured", "met"), rows),
+        "",
+        *limits(document),
     ]
 
 

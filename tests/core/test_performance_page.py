@@ -114,6 +114,47 @@ def test_the_page_says_when_the_machine_was_busy_and_when_peers_are_of_another_r
     assert "all in one run" in text
 
 
+def test_a_missed_goal_is_explained_with_what_was_measured(tmp_path):
+    ours, peer = (
+        entry("Radiosity Bake", "GOOD", 1.0, 0.02, points=8000),
+        entry("Mitsuba 3 at the probes", "64", 10.0, 0.02),
+    )
+    text = " ".join(page(measured(tmp_path, ours, peer)).split())
+    # 10 times faster with 8,000 vertices for its 4,000 points.
+    assert "10 times faster, not 20. It computes the 4,000 points" in text
+    assert "makes us 20 times faster for each point computed" in text
+    fast = {**ours, "seconds": 0.1, "processor_seconds": 0.2}
+    assert "It computes the 4,000 points" not in page(measured(tmp_path, fast, peer))
+
+
+def scaled(patches: int, seconds: float) -> dict:
+    """Return a bake as `bench.scaling` writes it."""
+    counts = {"patches": patches, "vertices": patches // 2, "rays": 64 * patches, "warnings": []}
+    return {**counts, "seconds": seconds, "processor_seconds": seconds, "others": 0.0, "peak_bytes": 3_900_000_000}
+
+
+def test_the_page_tells_how_time_grows_and_what_a_million_triangles_take(tmp_path):
+    document = measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.02))
+    rows = [scaled(1000, 1.0), scaled(10_000, 5.0), scaled(100_000, 100.0)]
+    dense = {"triangles": 1_001_000, "core": scaled(3000, 200.0), "operator": scaled(3000, 300.0)}
+    told = {"run": "2026-01-01", "quality": "GOOD", "memory_limit": 4096, "patches": rows, "dense": dense}
+    text = " ".join(page({**document, "scaling": told}).split())
+    # A hundred times the patches take a hundred times as long, and in the last step ten times 20 times as long.
+    assert "grows as patches to the power of 1.00 over the whole range, of 1.30 in the last step" in text
+    assert "The statue made of 1,001,000 triangles" in text
+    assert "| whole operator | 3,000 | 1,500 | 192,000 | 300 | 300 | 3.90 GB |" in text
+
+
+def test_the_page_explains_what_takes_much_of_the_time(tmp_path):
+    document = measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.02))
+    row = {"scene": "cornell_box", "rays": 1_000_000, "processor_seconds": 1.0}
+    told = {"run": "2026-01-01", "quality": "GOOD", "scenes": [{**row, "shares": {"direct": 0.6, "ray library": 0.4}}]}
+    text = " ".join(page({**document, "profile": told}).split())
+    assert "What takes more than 15% and is no ray: `direct`" in text
+    # 40% of a second for a million rays, where half is wanted.
+    assert "Cornell box 40%, 400 of 1,000 nanoseconds a ray" in text
+
+
 def test_an_exact_bake_does_not_break_the_page(tmp_path):
     text = page(measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.0)))
     assert "0.00%" in text
