@@ -158,7 +158,8 @@ class Balance:
     def recoloured(self, surfaces: Surfaces) -> Balance:
         """The same elements, with the reflectance and emission that `surfaces` have."""
         means = self.means
-        return replace(self, reflectance=means.reflectance(surfaces), emission=means.emission(surfaces))
+        emission = emission_of_sides(means, self.base, surfaces)
+        return replace(self, reflectance=means.reflectance(surfaces), emission=emission)
 
     def from_world(self, world: Floats) -> Floats:
         """Irradiance over pi of the elements by what their rays see of the world, (m, 3), without its suns."""
@@ -193,8 +194,22 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         buried,
         means,
         means.reflectance(surfaces),
-        means.emission(surfaces),
+        emission_of_sides(means, base, surfaces),
     )
+
+
+def emission_of_sides(means: TriangleMeans, elements: Ints, surfaces: Surfaces) -> Floats:
+    """Emission of elements, (m, 3), none of those that are backs of triangles which emit from their front alone.
+
+    Parameters
+    ----------
+    means : TriangleMeans
+        Over the elements.
+    elements : (m,) int
+    """
+    emission = means.emission(surfaces)
+    emission[(elements & 1 == 1) & surfaces.front_only[means.triangle_of_node[elements >> 1]]] = 0.0
+    return emission
 
 
 def exchange_of(receiver: Ints, source: Ints, factor: Floats) -> Exchange:

@@ -68,7 +68,7 @@ class Emitters:
     areas : (k,) float
     radiance : (k, 3) float, W m^-2 sr^-1
     one_sided : (k,) bool
-        Emitters on solids, whose backs nothing sees.
+        Emitters whose back is dark, and those on solids, whose backs nothing sees.
     enclosed : (k, 2) bool
         Fronts and backs that see little but other emitters.
     lamps : tuple of Lamp
@@ -136,7 +136,7 @@ def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, see
         surfaces.normals[chosen],
         surfaces.areas[chosen] * piece_areas(within),
         surfaces.emission_over(chosen, within),
-        ~lit[surfaces.shell_of_triangle[chosen], 1],
+        ~lit[surfaces.shell_of_triangle[chosen], 1] | surfaces.front_only[chosen],
         enclosed,
         surfaces.lamps,
     )

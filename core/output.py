@@ -95,7 +95,8 @@ def _original(
 
     irradiance, radiosity = spread(front), spread(emission + reflectance * front)
     behind = None if back is None else spread(back)
-    radiosity_behind = None if back is None else spread(emission + reflectance * back)
+    emission_behind = np.where(surfaces.front_only[faces.triangle[chosen], None, None], 0.0, emission)
+    radiosity_behind = None if back is None else spread(emission_behind + reflectance * back)
     return BakedMesh(
         mesh=number,
         vertices=mesh.vertices,
@@ -141,6 +142,11 @@ def _refined(
     """
     chosen, front, back, turned = _without_collapsed(faces, chosen, front, back, turned)
     reflectance, emission = reflectance[chosen], emission[chosen]
+    emission_behind = np.where(surfaces.front_only[faces.triangle[chosen], None, None], 0.0, emission)
+    emission, emission_behind = (
+        np.where(turned[:, None, None], own, other)
+        for own, other in ((emission_behind, emission), (emission, emission_behind))
+    )
     first, last = surfaces.first_point_of_mesh[number : number + 2]
     made = np.flatnonzero(faces.mesh_of_point == number)
     made = np.intersect1d(made[made >= surfaces.first_point_of_mesh[-1]], faces.corners[chosen])
@@ -170,6 +176,6 @@ def _refined(
         corner_normals=ordered(normals),
         radiosity=ordered(emission + reflectance * irradiance),
         irradiance=ordered(irradiance),
-        radiosity_back=None if behind is None else ordered(emission + reflectance * behind),
+        radiosity_back=None if behind is None else ordered(emission_behind + reflectance * behind),
         irradiance_back=None if behind is None else ordered(behind),
     )

@@ -79,6 +79,7 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     # Into what is closed, light that starts elsewhere does not get.
     doubt = ~lit & ~(small | housing)[:, None] & ((visits > 0) | ~surfaces.closed[:, None])
     shines = np.repeat(surfaces.emission.any(axis=1)[:, None], 2, axis=1)
+    shines[surfaces.front_only, 1] = False
     shines[np.flatnonzero(housing[shell]), inside[shell[housing[shell]]]] = False
     lit |= _is_reached(surfaces, rays, steps, doubt & (area > 0.0)[:, None], shines, seed + 300)
     lit[small, 0] = True

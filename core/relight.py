@@ -126,8 +126,10 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
     """A number that changes with anything about a mesh but its colours and its name."""
     digest = blake2b(digest_size=16)
     flags = np.array([mesh.baked, mesh.seen, mesh.shadow])
-    clear = np.zeros(0, dtype=bool) if mesh.clear is None or not mesh.clear.any() else mesh.clear
-    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, clear):
+    marks = [
+        np.zeros(0, dtype=bool) if mark is None or not mark.any() else mark for mark in (mesh.clear, mesh.front_only)
+    ]
+    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, *marks):
         digest.update(repr((array.shape, array.dtype.str)).encode())
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()

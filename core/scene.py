@@ -53,7 +53,7 @@ class SurfaceMesh:
     reflectance : (t, 3) float, 0..1
         Diffuse albedo of each triangle, linear RGB.
     emission : (t, 3) float, W m^-2 sr^-1
-        Emitted radiance of each triangle, linear RGB; both sides emit, as in Cycles.
+        Emitted radiance of each triangle, linear RGB; of both sides, as in Cycles, without `front_only`.
     baked : bool
         Whether values are wanted on this mesh; it takes part in the light transport either way.
     seen : bool
@@ -64,6 +64,8 @@ class SurfaceMesh:
         Of the triangles over which they vary, in place of what is above.
     clear : (t,) bool or None
         Triangles that light goes through as if they were not there.
+    front_only : (t,) bool or None
+        Triangles whose back does not emit.
     """
 
     name: str
@@ -78,6 +80,7 @@ class SurfaceMesh:
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
     clear: NDArray[np.bool_] | None = None
+    front_only: NDArray[np.bool_] | None = None
 
     def emits(self) -> bool:
         """Whether it gives light anywhere."""

@@ -52,6 +52,8 @@ class Surfaces:
     baked : (t,) bool
     seen, shadow : (t,) bool
         Whether reflected light meets it, and whether it hides lamps and emitters.
+    front_only : (t,) bool
+        Whether only the front emits.
     extent : float
         Largest edge of the bounding box.
     world : (3,) or (cells, 3) float
@@ -81,6 +83,7 @@ class Surfaces:
     baked: NDArray[np.bool_]
     seen: NDArray[np.bool_]
     shadow: NDArray[np.bool_]
+    front_only: NDArray[np.bool_]
     extent: float
     world: Floats
     lamps: tuple[Lamp, ...]
@@ -154,8 +157,7 @@ def join(scene: Scene) -> Surfaces:
     counts = [len(keep) for keep in kept]
     mesh_of_triangle = np.repeat(np.arange(len(counts)), counts)
     flags = np.array([(mesh.baked, mesh.seen, mesh.shadow) for mesh in scene.meshes])[mesh_of_triangle]
-    clear = [np.zeros(len(k), bool) if m.clear is None else m.clear[k] for m, k in zip(scene.meshes, kept, strict=True)]
-    opaque = ~np.concatenate(clear)
+    opaque = ~_marked([mesh.clear for mesh in scene.meshes], kept)
     normals = normalized(cross)
     corner_normals = np.concatenate([m.corner_normals[k] for m, k in zip(scene.meshes, kept, strict=True)]).astype(
         float
@@ -175,6 +177,7 @@ def join(scene: Scene) -> Surfaces:
         baked=flags[:, 0],
         seen=flags[:, 1] & opaque,
         shadow=flags[:, 2] & opaque,
+        front_only=_marked([mesh.front_only for mesh in scene.meshes], kept),
         extent=extent,
         warnings=tuple(warnings),
         **_colours(scene, kept),
@@ -207,6 +210,13 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
         "lamps": tuple(replace(lamp, strength=_not_negative(lamp.strength)) for lamp in scene.lamps),
         "colour_warnings": tuple(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names),
     }
+
+
+def _marked(marks: list[NDArray[np.bool_] | None], kept: list[Ints]) -> NDArray[np.bool_]:
+    """Marks of the sound triangles of all meshes, of which some have none."""
+    return np.concatenate(
+        [np.zeros(len(k), dtype=bool) if mark is None else mark[k] for mark, k in zip(marks, kept, strict=True)]
+    )
 
 
 def _not_negative(light: Floats | NDArray[np.float32]) -> Floats:

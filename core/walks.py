@@ -153,7 +153,8 @@ def from_emitters(surfaces: Surfaces, rays: RayScene, count: int, seed: int) -> 
     triangle = np.minimum(np.searchsorted(power, step, side="right"), len(power) - 1)
     drawn = hashed(np.arange(count), 3, seed + 1)
     weights = triangle_weights(drawn[:, 1:3])
-    return leaving(surfaces, rays, triangle, drawn[:, 0] < 0.5, weights, seed + 2)
+    back = (drawn[:, 0] < 0.5) & ~surfaces.front_only[triangle]
+    return leaving(surfaces, rays, triangle, back, weights, seed + 2)
 
 
 def from_side(surfaces: Surfaces, rays: RayScene, triangles: Ints, back: bool, count: int, seed: int) -> Walks:

@@ -38,7 +38,7 @@ class Appearance:
     ----------
     reflectance, emission : (t, 3) float
     reflectance_texture, emission_texture : Texture or None
-    clear : (t,) bool or None
+    clear, front_only : (t,) bool or None
     """
 
     reflectance: Floats
@@ -46,6 +46,7 @@ class Appearance:
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
     clear: np.ndarray | None = None
+    front_only: np.ndarray | None = None
 
     def painted(self, reflectance: Floats) -> "Appearance":
         """The same with one reflectance (3,) all over."""
@@ -196,8 +197,10 @@ def appearance_of(
     if evaluation is not None:
         evaluated[evaluation.triangle] = True
     colours: dict[str, Any] = {}
-    if any(surface.clear for surface in surfaces):
-        colours["clear"] = np.array([surface.clear for surface in surfaces])[slot_of_triangle]
+    for name in ("clear", "front_only"):
+        marks = np.array([getattr(surface, name) for surface in surfaces])
+        if marks.any():
+            colours[name] = marks[slot_of_triangle]
     for name in ("reflectance", "emission"):
         values = [getattr(surface, name) for surface in surfaces]
         constants = np.array([np.zeros(3) if varies(value) else value for value in values])

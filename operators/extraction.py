@@ -464,6 +464,7 @@ class _Reader:
                 reflectance_texture=appearance.reflectance_texture,
                 emission_texture=appearance.emission_texture,
                 clear=appearance.clear,
+                front_only=appearance.front_only,
                 baked=entry.owner is not None,
                 seen=role.seen,
                 shadow=role.shadow,

@@ -7,7 +7,7 @@ node is named, for Blender to evaluate it.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -58,6 +58,8 @@ class Surface:
         What was skipped or guessed, each a clause to follow the material's name and a colon.
     clear : bool
         Whether light goes through it as if it were not there.
+    front_only : bool
+        Whether it emits from its front alone.
     unread : tuple of str
         Nodes that only Blender can evaluate, in the words of its Add menu: where there is one, the colours are guesses.
     """
@@ -67,6 +69,7 @@ class Surface:
     notes: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
     clear: bool = False
+    front_only: bool = False
 
     def colours(self) -> tuple[Colour | Varying, Colour | Varying]:
         """Return both."""
@@ -102,14 +105,33 @@ def material_surface(material: bpy.types.Material | None) -> Surface:
         return _surface(GREY, notes=["it shows an earlier bake; plain grey was used instead"])
     if not uses_nodes(material):
         return _surface(np.clip(material.diffuse_color[:3], 0.0, 1.0))
-    shader = _ShaderReader(material.node_tree, with_textures=True).surface()
+    shader = _sided(material.node_tree)
     if varies(shader.reflectance):
         return shader
     reflectance = np.clip(shader.reflectance, 0.0, 1.0)
     if np.any(reflectance != shader.reflectance):
-        notes = [*shader.notes, "its colour is brighter than white; white was used instead"]
-        return _surface(reflectance, shader.emission, notes, shader.unread, shader.clear)
+        notes = (*shader.notes, "its colour is brighter than white; white was used instead")
+        return replace(shader, reflectance=reflectance, notes=notes)
     return shader
+
+
+def _sided(tree: bpy.types.NodeTree) -> Surface:
+    """Return what a material does to light; of what its back does otherwise, only to be dark is understood."""
+    reader = _ShaderReader(tree, with_textures=True)
+    front = reader.surface()
+    if not reader.asked_for_side or front.clear:
+        return front
+    back = _ShaderReader(tree, with_textures=True, back=True).surface()
+    front_only = not varies(back.emission) and not np.any(back.emission)
+    same = front_only or _alike(front.emission, back.emission)
+    if same and (_alike(front.reflectance, back.reflectance) or back.clear):
+        return replace(front, front_only=front_only)
+    note = "it looks otherwise from behind; its front counts, but for emission that ends there"
+    return replace(front, front_only=front_only, notes=(*front.notes, note))
+
+
+def _alike(first: Colour | Varying, second: Colour | Varying) -> bool:
+    return not varies(first, second) and np.array_equal(first, second)
 
 
 def constant_emission(owner: bpy.types.World | bpy.types.Light) -> tuple[Colour, tuple[str, ...]]:
@@ -131,11 +153,20 @@ class _ShaderReader:
     ----------
     with_textures : bool
         Whether colours may vary. If not, whatever is no constant is named in the notes.
+    back : bool
+        Whether the surface is seen from behind, as the Geometry node tells.
+
+    Attributes
+    ----------
+    asked_for_side : bool
+        Whether something depends on that.
     """
 
-    def __init__(self, tree: bpy.types.NodeTree, with_textures: bool = False) -> None:
+    def __init__(self, tree: bpy.types.NodeTree, with_textures: bool = False, back: bool = False) -> None:
         self.tree = tree
         self.with_textures = with_textures
+        self.back = back
+        self.asked_for_side = False
         self.notes: list[str] = []
         self.unread: list[str] = []
 
@@ -230,6 +261,9 @@ class _ShaderReader:
             return _default(outer)
         if output.node.type in {"VALUE", "RGB"}:
             return _default(output)
+        if self.with_textures and output.node.type == "NEW_GEOMETRY" and output.identifier == "Backfacing":
+            self.asked_for_side = True
+            return float(self.back)
         if self.with_textures:
             found = self._texture(output, outer)
             if found is not None:

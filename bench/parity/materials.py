@@ -136,3 +136,19 @@ def transparent_sheet() -> list[Any]:
     stage.grid("Sheet", 2.5, 2.5, 2, air, location=(0.0, 0.0, 0.4))
     stage.lamp("AREA", shape="DISK", size=0.5)
     return [floor]
+
+
+@case("Emission from one side, by a Backfacing node")
+def one_sided_emission() -> list[Any]:
+    """A sheet that shines down and is dark above, between the floor and a wall."""
+    floor = stage.room()
+    made = bpy.data.materials.new("One Side")
+    tree = stage.node_tree(made)
+    mix, geometry = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeNewGeometry")
+    tree.links.new(geometry.outputs["Backfacing"], mix.inputs[0])
+    tree.links.new(stage.shader(tree, "ShaderNodeEmission", Strength=5.0).outputs[0], mix.inputs[1])
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=(0.0, 0.0, 0.0)).outputs[0], mix.inputs[2])
+    stage.show(tree, mix)
+    stage.grid("Sheet", 0.8, 0.8, 1, made, location=(0.2, 0.0, 1.2), rotation=(np.pi, 0.0, 0.0))
+    stage.mesh("Roof", [(-2, -2, 2), (-2, 2, 2), (2, 2, 2), (2, -2, 2)], [(0, 1, 2, 3)], stage.paint("Roof"))
+    return [floor]

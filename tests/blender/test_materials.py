@@ -186,3 +186,32 @@ def test_a_transparent_material_lets_light_through_and_one_in_part_does_not():
     (note,) = assert_surface(half, (0.4, 0.2, 0.1))
     assert "transparent in part" in note
     assert not material_surface(half).clear
+
+
+def sided_material(front, back):
+    """Return a material whose two sides are two shader nodes, mixed by Backfacing; each is (type, inputs)."""
+    material = bpy.data.materials.new("Sided")
+    tree = node_tree(material)
+    mix, geometry = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeNewGeometry")
+    tree.links.new(geometry.outputs["Backfacing"], mix.inputs[0])
+    for place, (kind, inputs) in ((1, front), (2, back)):
+        node = tree.nodes.new(kind)
+        for name, value in inputs.items():
+            socket_of(node, name).default_value = value
+        tree.links.new(node.outputs[0], mix.inputs[place])
+    link_surface(tree, mix)
+    return material
+
+
+def test_emission_may_end_behind():
+    shine = ("ShaderNodeEmission", {"Strength": 3.0})
+    dark = sided_material(shine, ("ShaderNodeBsdfDiffuse", {"Color": (0.0, 0.0, 0.0, 1.0)}))
+    assert assert_surface(dark, 0.0, 3.0) == ()
+    assert material_surface(dark).front_only
+    assert not material_surface(sided_material(shine, shine)).front_only
+
+
+def test_a_back_of_another_colour_counts_as_the_front_and_is_named():
+    red, blue = (("ShaderNodeBsdfDiffuse", {"Color": colour}) for colour in ((1, 0, 0, 1), (0, 0, 1, 1)))
+    (note,) = assert_surface(sided_material(red, blue), (1.0, 0.0, 0.0))
+    assert "from behind" in note
