@@ -74,6 +74,7 @@ class Colouring:
         self._attributes: dict[int, Attributes] = {}
         self._templates: dict[int, Template] = {}
         self._evaluations: dict[Any, Evaluation] = {}
+        self._known: dict[Any, Appearance] = {}
         self.users_of_note: dict[tuple[str, str], dict[str, None]] = {}
         self.users_of_evaluated: dict[tuple[str, str], dict[str, None]] = {}
 
@@ -100,13 +101,18 @@ class Colouring:
             slot = np.clip(local.slots, 0, max(len(materials) - 1, 0))
             surfaces = [self._surface(material) for material in materials] or [self._surface(None)]
             varied = np.array([varies(*surface.colours()) or bool(surface.unread) for surface in surfaces])
-            longest = largest_edges(placed(local, matrix)[0], local.triangles) * varied[slot]
+            longest = np.zeros(len(slot))
+            if varied.any():
+                longest = largest_edges(placed(local, matrix)[0], local.triangles) * varied[slot]
             found.append((surfaces, slot, longest))
+        appearances = []
         along = cells_along([longest for *_, longest in found])
-        return [
-            self._appearance(*entry, surfaces, slot, cells)
-            for entry, (surfaces, slot, _), cells in zip(entries, found, along, strict=True)
-        ]
+        for entry, (surfaces, slot, _), cells in zip(entries, found, along, strict=True):
+            # A cell costs Cycles far more than it costs us.
+            unread = np.array([bool(surface.unread) for surface in surfaces])[slot]
+            cells = np.where(unread, np.maximum(cells // 2, 1), cells)
+            appearances.append(self._appearance(*entry, surfaces, slot, cells))
+        return appearances
 
     def _surface(self, material: bpy.types.Material | None) -> Surface:
         if material not in self._surfaces:
@@ -137,7 +143,11 @@ class Colouring:
             evaluation = self._evaluated(original, local, materials, matrix, surfaces, slot, along, unread)
         if evaluation is not None and flipped:
             evaluation = evaluation.turned_over(along)
-        return appearance_of(surfaces, slot, attributes, along, evaluation)
+        # Instances of one mesh look alike.
+        key = id(local), materials, along.tobytes(), flipped, id(evaluation)
+        if key not in self._known:
+            self._known[key] = appearance_of(surfaces, slot, attributes, along, evaluation)
+        return self._known[key]
 
     def _evaluated(
         self,
