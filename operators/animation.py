@@ -191,7 +191,7 @@ class FrameRange:
         """Keep the colours alone: whole results of many frames would take gigabytes."""
         by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
         attributes = self._attributes_of_sets(lit)
-        for target, baked in baked_targets(lit.extraction.scene, lit.extraction.targets, lit.result):
+        for target, baked in baked_targets(lit.extraction.scene, lit.extraction.targets, lit.result, self._settings):
             if self._settings.output == "REFINED":
                 values = values_of_corners(target, baked, attributes)
             else:
@@ -225,7 +225,7 @@ class FrameRange:
         def beside(obj: bpy.types.Object, uid: int, journal: Journal) -> None:
             add_sets(obj, self._sets.get(uid, {}), self._attributes_of_sets(lit), journal)
 
-        attributes, exposure = attributes_of(self._settings, lit.extraction.scene, lit.result)
+        attributes, exposure = attributes_of(self._settings, lit.extraction, lit.result)
         objects, cautions = store(scene, lit.extraction, lit.result, attributes, beside)
         kept = lit.result.kept if self._settings.keep_transport else None
         remember(scene, lit.extraction, self._settings, replace(lit.result, kept=kept), objects)

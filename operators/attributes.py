@@ -12,6 +12,8 @@ import numpy as np
 from ..core.result import BakedMesh, BakeResult, GroupLight
 from ..core.scene import Floats, Scene
 from ..core.settings import BakeSettings
+from .extraction import Extraction
+from .targets import baked_targets
 
 RADIOSITY = "Radiosity"
 IRRADIANCE = "Irradiance"
@@ -89,20 +91,23 @@ def attributes_to_be(settings: BakeSettings, scene: Scene) -> Attributes:
     return Attributes(settings, (*names, "") if settings.light_groups else ())
 
 
-def attributes_of(settings: BakeSettings, scene: Scene, result: BakeResult) -> tuple[Attributes, dict[str, Any] | None]:
+def attributes_of(
+    settings: BakeSettings, extraction: Extraction, result: BakeResult
+) -> tuple[Attributes, dict[str, Any] | None]:
     """Return the attributes of a bake, and the exposure of its bytes for the report: None where there are none."""
-    attributes = attributes_to_be(settings, scene)
+    attributes = attributes_to_be(settings, extraction.scene)
     if settings.data_type == "FLOAT":
         return attributes, None
     maxima, exposure = {}, {}
+    meshes = [baked for _, baked in baked_targets(extraction.scene, extraction.targets, result, settings)]
     for quantity in (RADIOSITY, IRRADIANCE):
         names = (quantity.lower(), f"{quantity.lower()}_back")
-        found = [getattr(mesh, name) for mesh in result.meshes for name in names]
+        found = [getattr(mesh, name) for mesh in meshes for name in names]
         values = [part.max(axis=-1) for part in found if part is not None]
         brightest = max((float(part.max(initial=0.0)) for part in values), default=0.0)
         maximum = settings.byte_maximum or brightest or 1.0
         maxima[quantity] = maximum
-        if quantity in {RADIOSITY, attributes.quantity_shown()} | {IRRADIANCE}:
+        if attributes.name(quantity) in attributes.names():
             clipped = sum(int(np.count_nonzero(part > maximum)) for part in values)
             exposure[quantity] = {"maximum": maximum, "stops": math.log2(maximum), "clipped": clipped}
     return Attributes(settings, attributes.groups, maxima), exposure

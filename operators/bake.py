@@ -56,7 +56,7 @@ def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, r
     """Store `result`, then write and return the report; `read` is the seconds that the extraction took."""
     began = time.perf_counter()
     scene = scene_of(extraction)
-    attributes, exposure = attributes_of(settings, extraction.scene, result)
+    attributes, exposure = attributes_of(settings, extraction, result)
     objects, cautions = store(scene, extraction, result, attributes, without_sets)
     remember(scene, extraction, settings, result, objects)
     report = shown_report(extraction, result, objects, cautions, exposure, read, time.perf_counter() - began)

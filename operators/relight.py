@@ -58,7 +58,7 @@ def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_pr
     read = time.perf_counter() - began
     result = relight(bake.transport, extraction.scene, progress)
     began = time.perf_counter()
-    attributes, exposure = attributes_of(bake.settings, extraction.scene, result)
+    attributes, exposure = attributes_of(bake.settings, extraction, result)
     if bake.settings.output == "ORIGINAL":
         objects, cautions = store(scene, extraction, result, attributes)
     else:
@@ -96,7 +96,7 @@ def _store_in_refined(
     """
     outputs = outputs_by_source()
     found: list[tuple[bpy.types.Object, Target, BakedMesh]] = []
-    pairs = baked_targets(extraction.scene, extraction.targets, result)
+    pairs = baked_targets(extraction.scene, extraction.targets, result, bake.settings)
     for source, baked_object, (target, baked) in zip(_originals(bake), bake.objects, pairs, strict=True):
         for output in outputs[source]:
             if output.mode != "OBJECT" or fingerprint(output.data) != baked_object.fingerprint:

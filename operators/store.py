@@ -62,7 +62,7 @@ def store(
             f'The view layer "{extraction.view_layer}" was removed or renamed during the bake; nothing was stored'
         )
     check_storable(extraction, attributes)
-    pairs = baked_targets(extraction.scene, extraction.targets, result)
+    pairs = baked_targets(extraction.scene, extraction.targets, result, attributes.settings)
     found = _find([target for target, _ in pairs], view_layer)
     warnings = [sentence for target, obj in found for sentence in _cautions(target, obj, output)]
     baked_objects = []

@@ -9,15 +9,18 @@ selected.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import bpy
 import numpy as np
 
 from ..core.result import BakedMesh, BakeResult, GroupLight
 from ..core.scene import Floats, Ints, Scene
+from ..core.settings import BakeSettings
 from .layers import Layers
 from .local_mesh import LocalMesh, inverse_of, placed
+
+_Light = TypeVar("_Light", BakedMesh, GroupLight)
 
 SURFACE_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 """Types of objects that render as faces."""
@@ -172,11 +175,15 @@ def joined_glow(parts: Sequence[Part]) -> Floats | None:
     )
 
 
-def baked_targets(scene: Scene, targets: Iterable[Target], result: BakeResult) -> list[tuple[Target, BakedMesh]]:
+def baked_targets(
+    scene: Scene, targets: Iterable[Target], result: BakeResult, settings: BakeSettings
+) -> list[tuple[Target, BakedMesh]]:
     """Return each target with its baked values, those of several meshes joined as `Target.local` joins them."""
     baked = {mesh.mesh: mesh for mesh in result.meshes}
     joined = [(target, _joined_values(scene, target, [baked[mesh] for mesh in target.meshes])) for target in targets]
-    return [(target, _glowing(values, target.glow)) for target, values in joined]
+    # What is emitted is no indirect light, whether it lights others or not.
+    glows = settings.light != "INDIRECT"
+    return [(target, _glowing(values, target.glow if glows else None)) for target, values in joined]
 
 
 def _glowing(baked: BakedMesh, glow: Floats | None) -> BakedMesh:
@@ -184,8 +191,14 @@ def _glowing(baked: BakedMesh, glow: Floats | None) -> BakedMesh:
     if glow is None:
         return baked
     added = glow[baked.parent_triangle][:, None]
-    back = None if baked.radiosity_back is None else baked.radiosity_back + added
-    return replace(baked, radiosity=baked.radiosity + added, radiosity_back=back)
+
+    def more(light: _Light) -> _Light:
+        back = None if light.radiosity_back is None else light.radiosity_back + added
+        return replace(light, radiosity=light.radiosity + added, radiosity_back=back)
+
+    # It lights nothing, so it is in no light group.
+    groups = tuple(group if group.name else more(group) for group in baked.groups)
+    return replace(more(baked), groups=groups)
 
 
 def _joined_values(scene: Scene, target: Target, baked: list[BakedMesh]) -> BakedMesh:

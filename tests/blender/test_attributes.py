@@ -231,6 +231,20 @@ def test_each_light_group_has_an_attribute_of_its_own(bright_bake, output, light
     assert obj.data.color_attributes.active_color.name == quantity
 
 
+@pytest.mark.parametrize(("light", "glow"), [("ALL", 3.0), ("DIRECT", 3.0), ("INDIRECT", 0.0)])
+def test_what_glows_without_lighting_is_direct_light_of_no_group_and_fits_into_the_bytes(bright_bake, light, glow):
+    plane = add_plane(materials=[emission_material(strength=3.0)])
+    plane.radiosity_settings.emits = False
+    obj = bake(plane, light=light, light_groups=True, data_type="BYTE")
+    told = report()["exposure"]["Radiosity"]
+    assert told["maximum"] == pytest.approx(BRIGHT + 1.0 + glow)
+    assert told["clipped"] == 0
+    ungrouped = colours_of(obj.data, "Radiosity Ungrouped")[:, :3] * told["maximum"]
+    half_a_step = 0.5 * 2.4 / 1.055 / 255
+    expected = (corner_positions(obj) + BRIGHT) / 2.0 + glow
+    assert ungrouped == pytest.approx(expected, abs=half_a_step * told["maximum"])
+
+
 @pytest.mark.parametrize("output", OUTPUTS)
 def test_baking_a_part_of_the_scene_again_leaves_the_others_as_they_are(bright_bake, output):
     first, second = add_cube("First"), add_cube("Second")

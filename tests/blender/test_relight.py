@@ -307,6 +307,40 @@ def test_a_failure_in_the_middle_takes_back_what_was_written(room, monkeypatch):
     assert file_state() == before
 
 
+@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
+def test_materials_with_textures_show_the_new_colours(room, output):
+    bpy.context.scene.radiosity.material = "TEXTURED"
+    bake_selected(output)
+    paint = bpy.data.materials["Paint"]
+    set_colour(paint, (0.5, 0.25, 0.125))
+    relight()
+    shown = bpy.data.materials["Paint Radiosity"]
+    known = [node.inputs[6].default_value[:3] for node in shown.node_tree.nodes if node.type == "MIX"]
+    assert known == [pytest.approx((0.5, 0.25, 0.125))]
+    assert sorted(material.name for material in bpy.data.materials if "Paint" in material.name) == [
+        "Paint",
+        "Paint Radiosity",
+    ]
+
+
+@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
+def test_light_groups_and_bytes_are_relit(room, output):
+    room["Lamp"].lightgroup = "Key"
+    settings = bpy.context.scene.radiosity
+    settings.light_groups, settings.data_type, settings.domain = True, "BYTE", "POINT"
+    bake_selected(output)
+    before = report()["exposure"]
+    set_strength(bpy.data.materials["Shine"], 3.0)
+    relight()
+    after = report()["exposure"]
+    for quantity in ("Radiosity", "Irradiance"):
+        assert after[quantity]["maximum"] == pytest.approx(0.5 * before[quantity]["maximum"], rel=ROUNDING)
+    for obj in (bpy.data.objects[name] for name in report()["objects"]):
+        # The lamp is all the light there is.
+        assert colours_of(obj.data, "Radiosity Key").tobytes() == colours_of(obj.data).tobytes()
+        assert "Radiosity Ungrouped" not in obj.data.color_attributes
+
+
 # ---------------------------------------------------------------------------------------------------------------------
 # What is in memory, and for how long
 

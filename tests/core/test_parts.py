@@ -11,6 +11,7 @@ from radiosity_bake.core.parts import NotDividedError, all_groups, drawn_to_sum
 from radiosity_bake.core.relight import relight
 from radiosity_bake.core.scene import LightGroup, PointLamp, Scene
 from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.core.world import MAP_CELLS
 
 from tests.core.building import DARK, block
 from tests.core.test_bake import same_bytes
@@ -120,6 +121,15 @@ def test_textures_of_the_rest_are_dark_and_black_too():
         assert parts == pytest.approx(joined(result.meshes, name), abs=ROUNDING * 6.0)
     # Whatever is emitted is direct light: nothing here is as bright as the darker half of the panel.
     assert 0.0 < joined(result.meshes, "radiosity").max() < 2.0
+
+
+def test_a_world_that_is_a_map_is_a_part_as_any_other():
+    above = np.where(np.arange(MAP_CELLS) % 2, 0.5, 0.1)[:, None] * np.ones(3)
+    result = bake(replace(room(), world=above), BakeSettings(**COARSE, light="DIRECT", light_groups=True))
+    for mesh in result.meshes:
+        assert [group.name for group in mesh.groups] == ["Panel", "Lamp", ""]
+        total = sum(group.irradiance for group in mesh.groups)
+        assert total == pytest.approx(mesh.irradiance, abs=ROUNDING * max(mesh.irradiance.max(), 1.0))
 
 
 def test_groups_without_light_are_left_out():
