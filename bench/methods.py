@@ -39,6 +39,11 @@ FEWER_VERTICES = 4.0
 # Share of a bake's time, of all cores, inside the ray library.
 RAY_SHARE = 0.5
 
+# Time grows no faster than patches; a million triangles fit into so much memory, and take minutes.
+GROWTH = 1.0
+MOST_GIGABYTES = 4.0
+MOST_MINUTES = 10.0
+
 # The estimated error over the true one: a bound, and not too pessimistic a one.
 ESTIMATE_OVER_TRUTH = (1.0, 3.0)
 

@@ -11,7 +11,10 @@ from ..methods import (
     FASTER_ELSEWHERE,
     FASTER_ON_CORNELL_BOX,
     FEWER_VERTICES,
+    GROWTH,
     LARGEST_ERROR,
+    MOST_GIGABYTES,
+    MOST_MINUTES,
     OURS,
     RAY_SHARE,
 )
@@ -19,6 +22,7 @@ from ..results import Document, of_method, own_bake, ray_share, title
 from .equal_error import COMPARED_QUALITIES, faster_by_both, fewer_vertices
 from .limits import limits
 from .markdown import Lines, paragraph, percent, table, times
+from .scaling import exponents
 
 
 def goals(document: Document) -> Lines:
@@ -55,6 +59,7 @@ def goals(document: Document) -> Lines:
     rows.append(
         goal_row(f"and no more than {high:g} times", estimates, lambda x: x <= high, "{:.2f} times".format, max)
     )
+    rows += size_rows(document.get("scaling") or {})
     return [
         "## Goals",
         "",
@@ -83,6 +88,25 @@ def speed_rows(scenes: Sequence[Document]) -> list[tuple[str, str, str]]:
                 found = {scene: ratio for scene, ratio in ratios if ratio is not None}
                 name = f"{least:g} times faster than {peer} {where}, at the error of {quality}"
                 rows.append(goal_row(name, found, lambda x, g=least: x >= g, times, min))
+    return rows
+
+
+def size_rows(scaling: Document) -> list[tuple[str, str, str]]:
+    """Return the goals for large scenes, as far as they were measured."""
+    rows = []
+    patches, dense = scaling.get("patches") or [], scaling.get("dense")
+    if len(patches) > 1:
+        name = f"time that grows no faster than patches, to {patches[-1]['patches']:,} of them"
+        power = {"corridor": exponents(patches)[0]}
+        rows.append(goal_row(name, power, lambda x: x <= GROWTH, "to the power of {:.2f}".format, max))
+    if dense:
+        whole = dense["operator"]
+        for name, value, most, unit in (
+            ("below {:g} GB", whole["peak_bytes"] / 1e9, MOST_GIGABYTES, "GB"),
+            ("in at most {:g} minutes", whole["seconds"] / 60.0, MOST_MINUTES, "minutes"),
+        ):
+            goal = f"{dense['triangles']:,} triangles {name.format(most)}"
+            rows.append(goal_row(goal, {"statue": value}, lambda x, m=most: x <= m, f"{{:.1f}} {unit}".format, max))
     return rows
 
 

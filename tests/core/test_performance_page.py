@@ -142,6 +142,11 @@ def test_the_page_tells_how_time_grows_and_what_a_million_triangles_take(tmp_pat
     # A hundred times the patches take a hundred times as long, and in the last step ten times 20 times as long.
     assert "grows as patches to the power of 1.00 over the whole range, of 1.30 in the last step" in text
     assert "The statue made of 1,001,000 triangles" in text
+    assert (
+        "| time that grows no faster than patches, to 100,000 of them | to the power of 1.00 (Corridor) | yes |" in text
+    )
+    assert "| 1,001,000 triangles below 4 GB | 3.9 GB (Statue) | yes |" in text
+    assert "| 1,001,000 triangles in at most 10 minutes | 5.0 minutes (Statue) | yes |" in text
     assert "| whole operator | 3,000 | 1,500 | 192,000 | 300 | 300 | 3.90 GB |" in text
 
 
