@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Images as Cycles sees them: in the colours of the scene, and transparent where they are."""
 
+from collections.abc import Iterator
+
 import bpy
 import numpy as np
 from mathutils import Color
@@ -11,6 +13,9 @@ from ..core.textures import Image, halved, image_of
 
 MOST_PIXELS = 2048
 """Along an edge: larger images are made smaller, which the cells of a mesh are finer than in no scene."""
+
+MOST_SMOOTHED = 512
+"""Along an edge: of larger images, what lies between two pixels is taken for the mean of their light."""
 
 _AS_THEY_ARE = {"Non-Color", "Raw", "Generic Data"}
 
@@ -55,7 +60,8 @@ def read_image(image: bpy.types.Image, extension: str, closest: bool, alpha_used
     if not (image.is_float or plain):
         if image.colorspace_settings.name != "sRGB":
             raise UnreadableImageError(f'"{image.name}" is in the colour space {image.colorspace_settings.name}')
-        pixels[..., :3] = _from_srgb(pixels[..., :3])
+        smooth = not closest and max(width, height) <= MOST_SMOOTHED
+        pixels[..., :3] = _averaged_from_srgb(pixels[..., :3]) if smooth else _from_srgb(pixels[..., :3])
     while max(pixels.shape[:2]) > MOST_PIXELS:
         pixels = halved(pixels)
     return image_of(pixels, extension, closest)
@@ -70,6 +76,26 @@ def _with_four_channels(pixels: Singles) -> Singles:
     if channels == 2:
         opaque[..., 3] = pixels[..., 1]
     return opaque
+
+
+def _averaged_from_srgb(pixels: Singles) -> Singles:
+    """Return the mean light over each pixel of an sRGB image, by sixteen places in it.
+
+    Cycles passes from pixel to pixel in sRGB, where the way between black and white is darker than their mean.
+    """
+    light = np.zeros_like(pixels)
+    for line in _between(pixels, axis=1):
+        for place in _between(line, axis=0):
+            light += _from_srgb(place)
+    return light / 16.0
+
+
+def _between(pixels: Singles, axis: int) -> Iterator[Singles]:
+    """Give what lies 3/8 and 1/8 of a pixel to both sides of the middles of all, along one axis."""
+    for way in (-1, 1):
+        neighbour = np.roll(pixels, way, axis=axis)
+        for share in (0.125, 0.375):
+            yield (1.0 - share) * pixels + share * neighbour
 
 
 def _from_srgb(pixels: Singles) -> Singles:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 import pytest
-from radiosity_bake.core.textures import mean_colours
+from radiosity_bake.core.textures import mean_colours, with_means
 from radiosity_bake.operators import evaluation
 from radiosity_bake.operators.extraction import extract
 from radiosity_bake.operators.scratch import NoCyclesError
@@ -339,3 +339,16 @@ def test_without_cycles_the_sockets_value_is_taken_and_named(monkeypatch):
     (warning,) = extraction.warnings
     assert "Color Ramp could not be evaluated (Cycles is off)" in warning
     assert extraction.evaluated == ()
+
+
+def test_a_sharp_picture_in_srgb_has_the_mean_that_cycles_sees():
+    image = bpy.data.images.new("Chequered", 8, 8)
+    bright = (np.add.outer(np.arange(8), np.arange(8)) % 2)[..., None] * np.array([0.9, 0.8, 0.7, 0.0]) + [0, 0, 0, 1]
+    image.pixels.foreach_set(bright.astype(np.float32).reshape(-1))
+    sheet = add_sheet(painted(lambda tree: image_node(tree, image)), cells=64)
+    theirs = by_cycles(sheet, "DIFFUSE")
+    bpy.context.view_layer.update()
+    mesh = extract(bpy.context, [sheet]).scene.meshes[0]
+    ours = with_means(mesh.reflectance, mesh.reflectance_texture)
+    # Cycles' values are those of a grid eight times as fine as the picture; half of light and dark would be 20% more.
+    assert ours.mean(axis=0) == pytest.approx(theirs.mean(axis=0), rel=0.03)
