@@ -10,19 +10,33 @@ up. Shadow rays go to a few of them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .direct_light import DirectLight
 from .form_factors import point_to_triangle
+from .geometry import order_along_curve
 from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
 from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, SunLamp
 from .visibility import OFFSET, RayScene
 
+FEW_LAMPS = 32
+"""Lamps of which each gets a ray from every receiver: as many as a world may have suns."""
+
+STRONG = 2.0
+"""Rays due to one of many lamps from which on it gets them as one of few does."""
+
+NEAR = 2.0
+"""Radii from the middle of a lamp within which its light is not that of a point."""
+
 PLACES = 256
 """Places of a lamp that are added up where its light has no closed form. A straight edge, such as the horizon's, cuts
 off a share that is wrong by 0.8 * 0.5 * 256**-0.75 = 0.6% of the lamp (`LATTICE_ERROR`)."""
+
+PAIRS_AT_ONCE = 2**17
+"""Many lamps times receivers whose working arrays stay in a core's second cache."""
 
 PLACES_AT_ONCE = 2**17
 """Receivers times places whose working arrays are in memory at once."""
@@ -35,6 +49,9 @@ CLOSEST = 1.001
 
 ROUNDING = 1e-6
 """By which the edge of a beam is wider when receivers are chosen, radians: more than arccos loses near 1."""
+
+DARK = 1e-200
+"""Luminance that stands for none where it is divided by."""
 
 TINY = np.finfo(np.float64).tiny
 
@@ -85,7 +102,8 @@ def lamp_light(
     keys : (n,) int
         Numbers of the receivers, for their sampling patterns.
     shadow_rays : int
-        Rays each receiver spreads over all lamps; each that it would see gets one at least.
+        Rays each receiver spreads over all lamps. Of `FEW_LAMPS`, each that it would see gets one at least; of more,
+        each from which `STRONG` rays are due, and the others share the rest.
 
     Returns
     -------
@@ -94,12 +112,38 @@ def lamp_light(
         Standard error of its luminance, were the rays independent.
     """
     count = len(points)
-    whole = np.stack([unoccluded(lamp, points, normals) for lamp in lamps])
-    bright = whole * luminance[:, None]
-    wanted = ray_counts(shadow_rays * bright / np.maximum(bright.sum(axis=0), TINY))
+    size = max(1, PAIRS_AT_ONCE // len(lamps))
+    if len(lamps) > FEW_LAMPS and count > size:
+        parts = [
+            lamp_light(
+                lamps,
+                luminance,
+                first_number,
+                rays,
+                points[k : k + size],
+                normals[k : k + size],
+                lift[k : k + size],
+                keys[k : k + size],
+                shadow_rays,
+                seed,
+            )
+            for k in range(0, count, size)
+        ]
+        return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     shifts = hashed(keys, 2, seed)
+    whole = unoccluded_of_all(lamps, points, normals)
+    bright = whole * luminance[:, None]
+    total = np.maximum(bright.sum(axis=0), DARK)
     entries, variance = [DirectLight.none(count)], np.zeros(count)
-    for number, lamp in enumerate(lamps):
+    if len(lamps) > FEW_LAMPS:
+        weak = shadow_rays * bright < STRONG * total
+        drawn = _drawn(lamps, np.where(weak, bright, 0.0), shadow_rays / total, shifts[:, 0])
+        light, variance = _light_of_drawn(lamps, luminance, first_number, rays, points, normals, lift, shifts, drawn)
+        entries.append(light)
+        whole[weak] = 0.0
+    wanted = ray_counts(shadow_rays * bright / total)
+    for number in np.flatnonzero(whole.any(axis=1)):
+        lamp = lamps[number]
         some = np.flatnonzero(whole[number])
         rays_of = np.ones_like(some) if _is_sharp(lamp) else wanted[number, some]
         visible = np.ones(len(some))
@@ -115,6 +159,171 @@ def lamp_light(
         emitter = np.full(len(some), first_number + number)
         entries.append(DirectLight.of(count, some, emitter, whole[number, some] * visible))
     return DirectLight.joined(entries), np.sqrt(variance)
+
+
+@dataclass(frozen=True, eq=False)
+class _Draw:
+    """Rays to the weak among many lamps.
+
+    Attributes
+    ----------
+    lamp, receiver : (r,) int
+        By receivers.
+    light : (r,) float, W m^-2 sr^-1
+        Luminance that each ray stands for: together, all that the receiver would get of its weak lamps.
+    """
+
+    lamp: Ints
+    receiver: Ints
+    light: Floats
+
+
+def _drawn(lamps: tuple[Lamp, ...], bright: Floats, rays_for_light: Floats, shifts: Floats) -> _Draw:
+    """Spread rays at equal steps over the light of many lamps, in an order in which those near each other follow.
+
+    Parameters
+    ----------
+    bright : (l, n) float
+        Luminance that each receiver would get of each lamp.
+    rays_for_light : (n,) float
+        Rays due for a luminance of 1.
+    shifts : (n,) float, 0..1
+        Of the first ray.
+    """
+    order = order_along_curve(np.array([_middle(lamp) for lamp in lamps]))
+    before = np.cumsum(bright[order], axis=0)
+    total = before[-1]
+    count = np.ceil(total * rays_for_light)
+    step = total / np.maximum(count, 1.0)
+    last = np.clip(np.ceil(before / np.where(step > 0.0, step, 1.0) - shifts), 0.0, count)
+    rays_of = np.diff(last, axis=0, prepend=0.0).T.astype(np.int64)
+    receiver, place = np.nonzero(rays_of)
+    times = rays_of[receiver, place]
+    receiver = receiver.repeat(times)
+    return _Draw(order[place].repeat(times), receiver, step[receiver])
+
+
+def _middle(lamp: Lamp) -> Floats:
+    return np.zeros(3) if isinstance(lamp, SunLamp) else lamp.centre
+
+
+def _light_of_drawn(
+    lamps: tuple[Lamp, ...],
+    luminance: Floats,
+    first_number: int,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    shifts: Floats,
+    drawn: _Draw,
+) -> tuple[DirectLight, Floats]:
+    """What gets through along the rays to weak lamps, and the variance of its luminance, (n,)."""
+    count = len(points)
+    at = drawn.receiver
+    number = np.arange(len(at)) - np.searchsorted(at, at)
+    square = np.mod(shifts[at] + number[:, None] * [GOLDEN, GOLDEN * GOLDEN], 1.0)
+    visible = np.ones(len(at))
+    even = _even_points(lamps)
+    simple = np.zeros(len(lamps), dtype=bool)
+    simple[even.lamp] = [lamps[k].shadow for k in even.lamp]
+    place = np.full(len(lamps), -1)
+    place[even.lamp] = np.arange(len(even.lamp))
+    ask = np.flatnonzero(simple[drawn.lamp])
+    ways, facing = _ways_to_points(even.taken(place[drawn.lamp[ask]]), points[at[ask]], square[ask])
+    ways = _raised(ways, normals[at[ask]])
+    origins, back = rays.lifted(points[at[ask]], lift[at[ask]])
+    local = ways * rays.scale + back + OFFSET * facing
+    above = np.einsum("rx,rx->r", local, lift[at[ask]]) > -OFFSET
+    visible[ask] = above & rays.visible(origins, local.astype(np.float32)[:, None])[:, 0]
+    for which in np.unique(drawn.lamp[~simple[drawn.lamp]]):
+        lamp = lamps[which]
+        some = np.flatnonzero(drawn.lamp == which) if lamp.shadow else np.zeros(0, dtype=np.int64)
+        there = at[some]
+        ways = _raised(_ways(lamp, points[there], 1, square[some])[:, 0], normals[there])[:, None]
+        visible[some] = _visible_share(lamp, rays, points[there], normals[there], lift[there], ways)
+    seen = np.bincount(at, weights=visible, minlength=count)
+    asked = np.maximum(np.bincount(at, minlength=count), 1)
+    share = seen / asked
+    light = np.bincount(at, weights=drawn.light, minlength=count)
+    weight = drawn.light * visible / luminance[drawn.lamp]
+    return DirectLight.of(count, at, first_number + drawn.lamp, weight), light**2 * share * (1.0 - share) / asked
+
+
+def _raised(ways: Floats, normals: Floats) -> Floats:
+    """Ways (r, 3) turned over to above the horizon: only what is there of a lamp counts for what gets through."""
+    height = np.minimum(np.einsum("rx,rx->r", ways, normals), 0.0)
+    raised: Floats = ways - 2.0 * height[:, None] * normals
+    return raised
+
+
+@dataclass(frozen=True, eq=False)
+class _EvenPoints:
+    """Those of many lamps that shine to all sides alike.
+
+    Attributes
+    ----------
+    lamp : (k,) int
+    centre : (k, 3) float
+    radius : (k,) float
+    soft : (k,) bool
+    """
+
+    lamp: Ints
+    centre: Floats
+    radius: Floats
+    soft: NDArray[np.bool_]
+
+    def taken(self, which: Ints) -> _EvenPoints:
+        """Some of them."""
+        return _EvenPoints(self.lamp[which], self.centre[which], self.radius[which], self.soft[which])
+
+
+@lru_cache(maxsize=4)
+def _even_points(lamps: tuple[Lamp, ...]) -> _EvenPoints:
+    found = [(k, lamp) for k, lamp in enumerate(lamps) if isinstance(lamp, PointLamp) and lamp.cone is None]
+    return _EvenPoints(
+        np.array([k for k, _ in found], dtype=np.int64),
+        np.array([lamp.centre for _, lamp in found], dtype=np.float64).reshape(-1, 3),
+        np.array([lamp.radius for _, lamp in found], dtype=np.float64),
+        np.array([lamp.soft for _, lamp in found], dtype=bool),
+    )
+
+
+def _ways_to_points(lamps: _EvenPoints, points: Floats, square: Floats) -> tuple[Floats, Floats]:
+    """From receivers to a place on the disk that each sees of its lamp, and where the disk shines to, both (r, 3)."""
+    way, radius = lamps.centre - points, lamps.radius
+    distance = np.maximum(np.linalg.norm(way, axis=1), np.maximum(CLOSEST * radius, TINY))
+    # A sphere is seen as the disk in which the tangents touch it.
+    nearer = np.where(lamps.soft, 1.0, 1.0 - (radius / distance) ** 2)
+    toward = way / distance[:, None]
+    across = frames(toward, np.zeros(len(way)))[:, :2].astype(np.float64)
+    away, turn = radius * np.sqrt(nearer * square[:, 0]), 2.0 * np.pi * square[:, 1]
+    aside = np.stack([away * np.cos(turn), away * np.sin(turn)], axis=1)
+    return way * nearer[:, None] + np.einsum("rk,rkx->rx", aside, across), -toward
+
+
+def unoccluded_of_all(lamps: tuple[Lamp, ...], points: Floats, normals: Floats) -> Floats:
+    """Irradiance over pi for strengths of 1, were nothing in the way, (l, n): as `unoccluded`, but faster of many."""
+    if len(lamps) <= FEW_LAMPS:
+        return np.stack([unoccluded(lamp, points, normals) for lamp in lamps])
+    light = np.zeros((len(lamps), len(points)))
+    even = _even_points(lamps)
+    # About their middle, as products of large coordinates cancel.
+    origin = points.mean(axis=0)
+    centre, at = even.centre - origin, points - origin
+    radius, soft = even.radius[:, None], even.soft[:, None]
+    height = centre @ normals.T - np.einsum("nx,nx->n", at, normals)
+    square = np.maximum((centre**2).sum(axis=1)[:, None] + (at**2).sum(axis=1) - 2.0 * centre @ at.T, TINY)
+    light[even.lamp] = np.maximum(height, 0.0) / ((square + soft * radius**2) * np.sqrt(square) * np.pi)
+    # What reaches below the horizon, and what is as near as it is large, is done one by one.
+    single = (np.abs(height) < radius) | (square < NEAR**2 * radius**2)
+    for row in np.flatnonzero(single.any(axis=1)):
+        number, some = even.lamp[row], np.flatnonzero(single[row])
+        light[number, some] = unoccluded(lamps[number], points[some], normals[some])
+    for number in np.setdiff1d(np.arange(len(lamps)), even.lamp):
+        light[number] = unoccluded(lamps[number], points, normals)
+    return light
 
 
 def unoccluded(lamp: Lamp, points: Floats, normals: Floats) -> Floats:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .lamps import FEW_LAMPS
 from .scene import Ints
 from .surfaces import Surfaces, signed_volumes
 from .visibility import RayScene
@@ -19,6 +20,9 @@ from .walks import Steps, Walks, from_emitters, from_lamp, from_side, from_world
 
 WALKS = 16384
 """Random walks started; a side that takes part in the lighting of a room meets hundreds of them."""
+
+MOST_WALKS, FEWEST_OF_THOUSANDS = 2**16, 16
+"""Walks that all of many lamps start, about, and what each of thousands starts at least."""
 
 FEWEST_WALKS = 256
 """Walks that each of many lamps starts, or each of many sides in doubt: enough to meet the front of what a lamp lights
@@ -100,9 +104,12 @@ def _light(surfaces: Surfaces, rays: RayScene, from_emitting: Walks, seed: int) 
     if surfaces.world.any():
         parts.append(walked(surfaces, rays, from_world(surfaces, WALKS, seed), seed + 7))
     shining = [lamp for lamp in surfaces.lamps if lamp.strength.any()]
-    for number, lamp in enumerate(shining):
-        count = max(WALKS // len(shining), FEWEST_WALKS)
-        parts.append(walked(surfaces, rays, from_lamp(lamp, surfaces, rays, count, seed + 100 + number), seed + 8))
+    each = max(WALKS, min(FEWEST_WALKS * len(shining), MOST_WALKS)) // max(len(shining), 1)
+    count = max(each, FEWEST_OF_THOUSANDS)
+    starts = [from_lamp(lamp, surfaces, rays, count, seed + 100 + number) for number, lamp in enumerate(shining)]
+    # Of thousands of lamps all at once, of few each by itself.
+    groups = [starts] if len(starts) > FEW_LAMPS else [[start] for start in starts]
+    parts += [walked(surfaces, rays, Walks.joined(group), seed + 8) for group in groups]
     return Steps.joined(parts)
 
 

@@ -164,11 +164,14 @@ def world_nodes() -> list[Any]:
 def world_street() -> list[Any]:
     """Two houses at a corner, a kerb and a lamp post, in evening sun."""
     brick, plaster = stage.paint("Brick", (0.45, 0.18, 0.12)), stage.paint("Plaster", (0.75, 0.7, 0.6))
-    street = stage.grid("Street", 16.0, 16.0, 20, stage.paint("Asphalt", (0.12, 0.12, 0.13)))
+    asphalt = stage.paint("Asphalt", (0.12, 0.12, 0.13))
+    # What stands on something stands on the yard, so that all of the street's vertices lie open.
+    street = stage.grid("Street", 16.0, 8.0, 20, asphalt, location=(0.0, -4.0, 0.0))
+    stage.mesh("Yard", [(-8, 0, 0), (8, 0, 0), (8, 8, 0), (-8, 8, 0)], [(0, 1, 2, 3)], asphalt)
     stage.box("House", (-7.0, 1.05, -0.01), (-1.05, 7.0, 6.0), brick)
     stage.box("Shop", (1.05, 1.05, -0.01), (7.0, 7.0, 4.5), plaster)
     stage.box("Kerb", (-7.0, 0.05, -0.01), (-1.05, 1.0, 0.15), plaster)
-    stage.box("Post", (-0.93, -0.07, -0.01), (-0.85, 0.03, 4.0), plaster)
+    stage.box("Post", (-0.93, 0.07, -0.01), (-0.85, 0.15, 4.0), plaster)
     sky(25.0, 0.2)
     stage.camera((5.0, -7.5, 4.0), (-0.5, 1.5, 1.5), 30.0)
     return [street]

@@ -8,13 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from core.bake import bake
-from core.relight import ChangedSceneError, relight
-from core.sampling import hemisphere_lattice
-from core.scene import Scene, surface_mesh
-from core.settings import BakeSettings
-from core.world import (
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.relight import ChangedSceneError, relight
+from radiosity_bake.core.sampling import hemisphere_lattice
+from radiosity_bake.core.scene import Scene, surface_mesh
+from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.core.world import (
     MAP_CELLS,
     MOST_SUNS,
     MOST_WINDOWS,
