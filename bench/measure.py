@@ -130,7 +130,7 @@ def run_operator(scene: Scene, qualities: Sequence[str], folder: Path, warm: boo
 def by_form_factors_alone() -> Iterator[None]:
     """Let adaptive bakes at a minimum size refine as the paper does: by form factors down to it, not by the light."""
 
-    def same_sizes(surfaces: Any, settings: BakeSettings, effort: Any) -> tuple[float, float]:
+    def same_sizes(surfaces: Any, settings: BakeSettings, effort: Any, area: float) -> tuple[float, float]:
         return settings.minimum_size, settings.minimum_size
 
     patient = {name: replace(effort, tolerance=math.inf) for name, effort in bake_module.EFFORTS.items()}

@@ -17,7 +17,7 @@ from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, find_cuts
-from .detail import FaceSizes, light_up, light_up_in_detail
+from .detail import FaceSizes, counted_share_of_triangles, light_up, light_up_in_detail
 from .direct import all_emitters
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces
@@ -30,7 +30,7 @@ from .receivers import Receivers
 from .relight import KeptTransport, keep, parts_of, shapes_of
 from .result import BakeResult
 from .rows import BYTES_PER_RAY, COVER_GAP
-from .scene import Ints, Scene
+from .scene import Floats, Ints, Scene
 from .settings import BakeSettings
 from .subdivision import Faces, input_faces
 from .surfaces import Surfaces, join
@@ -69,6 +69,14 @@ BYTES_PER_VERTEX = 4096
 
 FINER_FACES = 16.0
 """Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
+
+LEAST_SEEING = 1.0 / 12.0
+"""Share that what sees anything must have of the area that the automatic sizes are made for; of the ground that a block
+or a few houses stand on, more does. Where a wide ground has nearly all of it, they are made for that share."""
+
+LARGEST_PATCH = 1.0 / 16.0
+"""Share of the area that the sizes are made for, which a patch counts for at most. Where no ground is wide none is
+larger."""
 
 FINER_CUTS = 4.0
 """Times smaller still where the outline of another object crosses them."""
@@ -143,17 +151,12 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     walked = rays.rays
     most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
 
-    clock.start("Coarse patches", 0.02, 0.03)
-    smallest, finest = minimum_sizes(surfaces, settings, effort)
+    most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
+    transport, rounds, area = subdivided(surfaces, rays, lit, settings, effort, most_rays, clock)
+    tree, per_row = transport.tree, transport.rays_per_row
+    smallest, finest = minimum_sizes(surfaces, settings, effort, area)
     automatic = not settings.minimum_size and settings.method == "ADAPTIVE"
     finest_cut = finest / FINER_CUTS if automatic else finest
-    tree = clustered_patches(surfaces, min(smallest, automatic_size(surfaces, effort)))
-    most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
-    per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
-    transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
-
-    clock.start("Form factors", 0.03, 0.4)
-    rounds = subdivide(transport, lit, settings, smallest, most_rays, clock)
 
     rays_of_rows = rays.rays - walked
 
@@ -186,9 +189,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def gather_at(places: Receivers) -> Gathered:
         return gather(transport, cells, radiance, emitters, places, per_receiver, finest, most_kept, gathering)
 
-    def light_up_first(faces: Faces) -> Lit:
+    def light_up_first(faces: Faces, share: Floats) -> Lit:
         nonlocal per_receiver
-        first = light_up(surfaces, lit, faces, gather_at)
+        first = light_up(surfaces, lit, faces, share, gather_at)
         per_receiver = enough_rays(per_receiver, first.noise(surfaces), len(first.places.points), most_kept)
         if per_receiver is effort.gather:
             return first
@@ -199,10 +202,11 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
 
     cuts, on_faces = None, None
     if settings.output == "ORIGINAL":
-        shown = light_up_first(input_faces(surfaces))
+        faces = input_faces(surfaces)
+        shown = light_up_first(faces, counted_share_of_triangles(tree, LARGEST_PATCH * area)[faces.triangle])
     else:
         aside = transport.is_aside()
-        sizes = FaceSizes(smallest, finest, finest_cut, most_vertices)
+        sizes = FaceSizes(smallest, finest, finest_cut, LARGEST_PATCH * area, most_vertices)
         shown, leaves = light_up_in_detail(
             surfaces,
             lit,
@@ -255,35 +259,64 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     return replace(result, kept=keep(kept)) if settings.keep_transport else result
 
 
-def minimum_sizes(surfaces: Surfaces, settings: BakeSettings, effort: Effort) -> tuple[float, float]:
+def minimum_sizes(surfaces: Surfaces, settings: BakeSettings, effort: Effort, area: float) -> tuple[float, float]:
     """The minimum sizes of patches and of faces, scene units.
 
     A size that was asked for is that of the smallest there are. What rays see is interpolated between the vertices, so
     where faces are split by the light on them, patches are not made smaller than the quality wants them.
+
+    Parameters
+    ----------
+    area : float, scene units squared
+        That the automatic ones are made for: of the whole scene, or less where a wide ground has most of it.
     """
-    automatic, asked = automatic_size(surfaces, effort), settings.minimum_size
+    automatic, asked = automatic_size(area, effort), settings.minimum_size
     if settings.method == "UNIFORM":
         return asked or automatic, asked or automatic
     if not asked:
-        return automatic, finest_size(surfaces, effort)
+        baked = float(surfaces.areas[surfaces.baked].sum())
+        return automatic, automatic_size(min(area, baked), effort) / FINER_FACES
     if settings.output == "ORIGINAL":
         return asked, asked
     return max(asked, automatic), asked
 
 
-def automatic_size(surfaces: Surfaces, effort: Effort) -> float:
-    """The minimum size n at which the whole scene, cut uniformly, has about `effort.patches` patches."""
-    return _size_of_patches(float(surfaces.areas.sum()), effort)
-
-
-def finest_size(surfaces: Surfaces, effort: Effort) -> float:
-    """How small faces may become where light changes fast: a fraction of the patches of what is baked."""
-    return _size_of_patches(float(surfaces.areas[surfaces.baked].sum()), effort) / FINER_FACES
-
-
-def _size_of_patches(area: float, effort: Effort) -> float:
+def automatic_size(area: float, effort: Effort) -> float:
+    """The minimum size n at which an area, cut uniformly, has about `effort.patches` patches."""
     # A right isosceles triangle of longest edge s has the area s^2 / 4, and sizes lie between n and 2n.
     return float(np.sqrt(4.0 * area / effort.patches) / np.sqrt(2.0))
+
+
+def subdivided(
+    surfaces: Surfaces,
+    rays: RayScene,
+    lit: NDArray[np.bool_],
+    settings: BakeSettings,
+    effort: Effort,
+    most_rays: int,
+    clock: Clock,
+) -> tuple[Transport, refinement.Refinement, float]:
+    """The traced patches, how their subdivision went, and the area that their minimum size was made for.
+
+    Where a wide ground has most of the area, a size made for all of it leaves a room on it as a few patches. But what
+    takes part in the exchange of light is where surfaces see each other, whatever lies around them. How large that is
+    even a few patches tell.
+    """
+    area = float(surfaces.areas.sum())
+    while True:
+        clock.start("Coarse patches", 0.02, 0.03)
+        smallest, _ = minimum_sizes(surfaces, settings, effort, area)
+        tree = clustered_patches(surfaces, min(smallest, automatic_size(area, effort)))
+        per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
+        transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
+        clock.start("Form factors", 0.03, 0.4)
+        rounds = subdivide(transport, lit, settings, smallest, most_rays, clock)
+        seeing = transport.seeing_area()
+        if settings.method == "UNIFORM" or seeing == 0.0 or seeing >= LEAST_SEEING * area:
+            return transport, rounds, area
+        if minimum_sizes(surfaces, settings, effort, seeing)[0] >= smallest:
+            return transport, rounds, area
+        area = seeing
 
 
 def rays_that_fit(wanted: int, most: int, patches: int) -> int:

@@ -27,6 +27,9 @@ MOST_CELLS = 2**21
 """Cells of all patches together: 64 MB for what is seen on their two sides."""
 
 MOST_CELLS_ALONG_EDGE = 512
+"""Of a coarse patch; of a wider one, such as a ground that reaches far beyond all else, the leaves are cut instead."""
+
+MOST_CELLS_ALONG_LEAF = 64
 
 INSIDE = np.float32(1.0 - 1e-6)
 """Keeps weights that are rounded up, or that add up to a little more than 1, in the last cell."""
@@ -59,7 +62,7 @@ class Cells:
     Attributes
     ----------
     node : (cells,) int
-        The coarse patch of each cell.
+        The coarse patch of each cell, or the leaf of a wide one.
     centre : (cells, 2) float32
         Barycentric weights of corners 1 and 2 in it.
     triangle : (cells,) int
@@ -83,7 +86,17 @@ class Cells:
     ) -> None:
         self._locator = locator
         roots = np.flatnonzero(tree.root == np.arange(len(tree)))
-        along = np.clip(np.ceil(tree.sizes(roots) / size), 1, MOST_CELLS_ALONG_EDGE).astype(np.int64)
+        wide = roots[tree.sizes(roots) > MOST_CELLS_ALONG_EDGE * size]
+        self._tree = tree
+        self._is_wide = np.zeros(len(tree) + 1, dtype=bool)
+        self._is_wide[wide] = True
+        most = np.full(len(tree), MOST_CELLS_ALONG_EDGE)
+        if len(wide):
+            leaves = tree.leaves()
+            leaves = leaves[self._is_wide[tree.root[leaves]]]
+            most[leaves] = MOST_CELLS_ALONG_LEAF
+            roots = np.union1d(roots[~self._is_wide[roots]], leaves)
+        along = np.clip(np.ceil(tree.sizes(roots) / size), 1, most[roots]).astype(np.int64)
         while (along**2).sum() > MOST_CELLS and along.max() > 1:
             along = np.minimum(along, max(1, int(0.8 * along.max())))
         cells = along**2
@@ -130,6 +143,11 @@ class Cells:
             weights = np.stack([u, v], axis=1)
             node = self._locator.coarse(np.maximum(node, 0), weights)
             u, v = weights[:, 0], weights[:, 1]
+        deeper = np.flatnonzero(self._is_wide[node])
+        if len(deeper):
+            leaf, inside = self._tree.descend(node[deeper].astype(np.int64), np.stack([u[deeper], v[deeper]], axis=1))
+            node, u, v = node.copy(), u.copy(), v.copy()
+            node[deeper], u[deeper], v[deeper] = leaf, inside[:, 0], inside[:, 1]
         along = self._along[node]
         inside = along * INSIDE
         u, v = u * inside, v * inside

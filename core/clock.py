@@ -58,5 +58,6 @@ class Clock:
     def _finish_stage(self) -> None:
         now = time.perf_counter()
         if self._stage:
-            self.seconds[self._stage.lower().replace(" ", "_")] = now - self._stage_begun
+            name = self._stage.lower().replace(" ", "_")
+            self.seconds[name] = self.seconds.get(name, 0.0) + now - self._stage_begun
         self._stage_begun = now

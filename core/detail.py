@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts
 from .direct import LUMINANCE
-from .error_estimate import interpolation_error
+from .error_estimate import interpolation_error, lit_area
 from .gather import Gathered
-from .geometry import triangle_areas
 from .lit import Lit
 from .patches import PatchTree
 from .receivers import Receivers, receivers
@@ -47,6 +46,9 @@ class FaceSizes:
         Only faces of twice this size or more are split.
     smallest_cut : float, scene units
         The same where the outline of another object crosses them.
+    largest : float, scene units squared
+        Area that a patch counts for at most: one that nothing is near enough to for the form factors to have split it
+        is background, however wide.
     most_vertices : int
         Receivers after which no face is split any more.
     """
@@ -54,17 +56,18 @@ class FaceSizes:
     patches: float
     smallest: float
     smallest_cut: float
+    largest: float
     most_vertices: int
 
 
 GatherAt = Callable[[Receivers], Gathered]
 
 
-def light_up(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, gather_at: GatherAt) -> Lit:
-    """Gather light at all corners of faces as they are."""
+def light_up(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, share: Floats, gather_at: GatherAt) -> Lit:
+    """Gather light at all corners of faces as they are, of which a share (faces,) counts."""
     face, side = _wanted_sides(faces, surfaces, lit)
     places = receivers(surfaces, faces, face, side)
-    return Lit(faces, face, side, places, gather_at(places))
+    return Lit(faces, face, side, places, gather_at(places), share)
 
 
 def light_up_in_detail(
@@ -74,7 +77,7 @@ def light_up_in_detail(
     partly: NDArray[np.bool_],
     sizes: FaceSizes,
     tolerance: float,
-    light_up_first: Callable[[Faces], Lit],
+    light_up_first: Callable[[Faces, Floats], Lit],
     gather_at: GatherAt,
     is_hidden: IsHidden,
 ) -> tuple[Lit, PatchTree]:
@@ -92,7 +95,7 @@ def light_up_in_detail(
     tolerance : float
         RMS error over the surface to be reached, relative to the mean.
     light_up_first : callable
-        Gathers light at the corners of the patches.
+        Gathers light at the corners of the patches, of which a share counts.
     gather_at : callable
         The same at all vertices after them.
     is_hidden : callable
@@ -102,7 +105,7 @@ def light_up_in_detail(
     -------
     The faces and their light, and the tree whose leaves they lie in.
     """
-    shown = _ShownFaces(surfaces, lit, tree.copy(), light_up_first, gather_at)
+    shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, light_up_first, gather_at)
 
     def split_by_feet(first_new: int) -> Ints:
         nodes = [np.zeros(0, dtype=np.int64)]
@@ -164,13 +167,15 @@ class _ShownFaces:
         surfaces: Surfaces,
         lit: NDArray[np.bool_],
         tree: PatchTree,
-        light_up_first: Callable[[Faces], Lit],
+        largest: float,
+        light_up_first: Callable[[Faces, Floats], Lit],
         gather_at: GatherAt,
     ) -> None:
         self._surfaces, self._lit, self.tree, self._gather_at = surfaces, lit, tree, gather_at
+        self._share_of_patch = counted_share(tree.areas(tree.patch), largest)
         self._changed_shells = np.zeros(len(lit), dtype=bool)
         faces = conforming_faces(surfaces, tree, ~self._changed_shells)
-        self._first = light_up_first(faces)
+        self._first = light_up_first(faces, self._share(faces))
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
         self._missed = _missed_light(surfaces, self._first, len(tree))
         self._shell_of_node = surfaces.shell_of_triangle[tree.triangle]
@@ -206,7 +211,12 @@ class _ShownFaces:
             self._changed = changed.with_others(every, more, self.tree)
         self.tree.split(nodes)
         faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
-        self._changed = _updated(self._surfaces, self._lit, faces, self._gather_at, self._changed)
+        self._changed = _updated(self._surfaces, self._lit, faces, self._share(faces), self._gather_at, self._changed)
+
+    def _share(self, faces: Faces) -> Floats:
+        """Share of the area of faces that counts, (faces,)."""
+        share: Floats = self._share_of_patch[self.tree.ancestors(len(self._share_of_patch))[faces.node]]
+        return share
 
     def all(self) -> Lit:
         """The faces and their light."""
@@ -234,7 +244,24 @@ def _wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> t
     return face, side
 
 
-def _updated(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, gather_at: GatherAt, known: Lit) -> Lit:
+def counted_share(areas: Floats, largest: float) -> Floats:
+    """Share of the areas of patches that counts, where each counts for `largest` at most."""
+    share: Floats = np.minimum(1.0, largest / np.maximum(areas, np.finfo(np.float64).tiny))
+    return share
+
+
+def counted_share_of_triangles(tree: PatchTree, largest: float) -> Floats:
+    """The same of the surfaces' triangles, (t,), of which patches are parts or clusters."""
+    leaves = tree.leaves()
+    triangle, area = tree.triangle[leaves], tree.areas(leaves)
+    counted = np.bincount(triangle, weights=area * counted_share(tree.areas(tree.patch[leaves]), largest))
+    share: Floats = counted / np.maximum(np.bincount(triangle, weights=area), np.finfo(np.float64).tiny)
+    return share
+
+
+def _updated(
+    surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, share: Floats, gather_at: GatherAt, known: Lit
+) -> Lit:
     """Gather at the receivers that `known` has not, and take the others from it."""
     face, side = _wanted_sides(faces, surfaces, lit)
     places = receivers(surfaces, faces, face, side)
@@ -242,7 +269,7 @@ def _updated(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, gather_at
     place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
     missing = np.flatnonzero(old.codes[place] != places.codes)
     new = gather_at(places.taken(missing))
-    return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing))
+    return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing), share)
 
 
 def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
@@ -250,7 +277,7 @@ def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
     faces, face = known.faces, known.face
     corners = faces.points[faces.corners[face]]
     luminance = known.corner_irradiance() @ LUMINANCE
-    area = triangle_areas(corners) * known.counted(surfaces)
+    area = known.weights(surfaces)
     missed = interpolation_error(corners, known.places.of_corner, luminance)
     summed = (missed**2 * area, area, area * luminance.mean(axis=1))
     by_node = [np.bincount(faces.node[face], weights=value, minlength=nodes) for value in summed]
@@ -260,12 +287,11 @@ def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
 def _nodes_to_split(missed_light: Floats, tree: PatchTree, smallest: float, tolerance: float) -> Ints:
     """The fewest leaves whose error must go for the rest to meet the tolerance, worst first."""
     square, area, light = missed_light
-    if not area.any():
-        return np.zeros(0, dtype=np.int64)
+    lit, mean = lit_area(area, light)
     splittable = np.flatnonzero(square)
     splittable = splittable[tree.sizes(splittable) >= 2.0 * smallest]
     worst_first = splittable[np.argsort(-square[splittable], kind="stable")]
-    allowed = (tolerance * light.sum() / area.sum()) ** 2 * area.sum()
+    allowed = (tolerance * mean) ** 2 * lit
     # What is left of the error that splitting could mend before the first k are gone.
     left = square[worst_first].sum() - np.cumsum(square[worst_first]) + square[worst_first]
     return np.sort(worst_first[left > allowed])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .direct import LUMINANCE
-from .error_estimate import relative_error
+from .error_estimate import lit_area, relative_error
 from .gather import Gathered, corner_values
 from .geometry import triangle_areas
 from .patches import PatchTree
@@ -34,6 +34,8 @@ class Lit:
         `of_corner` has a row for each face side.
     gathered : Gathered
         At the receivers.
+    share : (faces,) float
+        Part of each face's area that counts: less than 1 where it lies in a patch that is far larger than others.
     """
 
     faces: Faces
@@ -41,36 +43,33 @@ class Lit:
     side: Ints
     places: Receivers
     gathered: Gathered
+    share: Floats
 
     def corner_irradiance(self) -> Floats:
         """Irradiance over pi at the corners of the face sides, (f, 3, 3)."""
         return corner_values(self.gathered, self.places.of_corner)
 
-    def counted(self, surfaces: Surfaces) -> NDArray[np.bool_]:
-        """Face sides whose error counts: neither emitters nor hidden altogether, (f,)."""
+    def weights(self, surfaces: Surfaces) -> Floats:
+        """Area of each face side whose error counts, (f,): none of emitters and of what is hidden altogether."""
         emission = surfaces.emission_over(self.faces.triangle, self.faces.weights)
         dark = np.all(emission[self.face] == 0.0, axis=1)
-        shown: NDArray[np.bool_] = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
-        return dark & shown
+        shown = np.any(~self.gathered.hidden[self.places.of_corner], axis=1)
+        area = triangle_areas(self.faces.points[self.faces.corners[self.face]])
+        return np.where(dark & shown, area * self.share[self.face], 0.0)
 
     def error(self, surfaces: Surfaces) -> float:
         """Estimated RMS error over the surface, relative to its mean."""
         corners = self.faces.points[self.faces.corners[self.face]]
         return relative_error(
-            corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.counted(surfaces)
+            corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.weights(surfaces)
         )
 
     def noise(self, surfaces: Surfaces) -> float:
-        """Noise of the hemisphere rays over the surface that has light, relative to its mean.
-
-        With what is black, a wide dark ground around a room would make any noise in the room look large.
-        """
-        weight = triangle_areas(self.faces.points[self.faces.corners[self.face]]) * self.counted(surfaces)
-        at_faces = (self.corner_irradiance() @ LUMINANCE).mean(axis=1)
-        weight = weight * (at_faces > 0.0)
-        light = float(weight @ at_faces)
+        """Noise of the hemisphere rays over the surface, relative to the mean of what has light."""
+        weight = self.weights(surfaces)
+        area, mean = lit_area(weight, weight * (self.corner_irradiance() @ LUMINANCE).mean(axis=1))
         square = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
-        return math.sqrt(square * weight.sum()) / light if light > 0.0 else 0.0
+        return math.sqrt(square / area) / mean if mean > 0.0 else 0.0
 
     def part(self, kept: NDArray[np.bool_]) -> Lit:
         """Some of the faces, (faces,) bool, which share no receiver with the others."""
@@ -82,6 +81,7 @@ class Lit:
             self.side[rows],
             replace(self.places.taken(receivers), of_corner=of_corner.reshape(-1, 3)),
             self.gathered.taken(receivers),
+            self.share[kept],
         )
 
     def with_others(self, kept: NDArray[np.bool_], others: Lit, tree: PatchTree) -> Lit:
@@ -108,4 +108,5 @@ class Lit:
             side[sorted_sides],
             replace(self.places.joined(others.places, receivers), of_corner=place[of_corner[sorted_sides]]),
             self.gathered.joined(others.gathered, receivers),
+            np.concatenate([self.share[own], others.share])[order],
         )

@@ -195,6 +195,17 @@ class PatchTree:
         self.patch[node] = node
         self.patch[self.clusters.members_of(clusters)] = np.repeat(node, self.clusters.count[clusters])
 
+    def ancestors(self, count: int) -> Ints:
+        """The one of the first `count` nodes that each node is, or was split from, (n,)."""
+        above = np.arange(len(self))
+        for k in range(4):
+            split = np.flatnonzero((self.first_child >= 0) & ((self.kind == FOUR) | (k < 2)))
+            above[self.first_child[split] + k] = split
+        above[:count] = np.arange(count)
+        while above.max(initial=-1) >= count:
+            above = above[above]
+        return above
+
     def midpoints(self, starts: Ints, ends: Ints) -> Ints:
         """The midpoint of each edge as a point index, -1 where the edge was never halved; same shape as `starts`."""
         key = self._keys(starts, ends)

@@ -20,8 +20,8 @@ SMALLEST_AREA = 1e-14
 
 
 HAIR = 8e-7
-"""How much solids are made smaller for rays, in units of the scene's extent: 13 steps between neighbouring float32, and
-less than rays start off their surface."""
+"""How much solids are made smaller for rays, in units of the extent that the scene would have if it ended with them: 13
+steps between neighbouring float32, and less than rays start off their surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,11 @@ class Surfaces:
             ],
             axis=1,
         )
-        moved: Floats = self.points - HAIR * self.extent * normalized(outward)[self.place_of_point]
+        used = self.points[self.triangles.ravel()]
+        middle = (used.min(axis=0) + used.max(axis=0)) / 2.0
+        # On a wide ground, rays are as fine near its middle as the coordinates there, which are small.
+        reach = 2.0 * float(np.abs(self.points[chosen] - middle).max(initial=0.0))
+        moved: Floats = self.points - HAIR * reach * normalized(outward)[self.place_of_point]
         return moved
 
     def reflectance_over(self, triangle: Ints, corners: Floats) -> Floats:

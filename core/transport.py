@@ -109,6 +109,19 @@ class Transport:
         """Rays that are kept in memory."""
         return sum(table.hits.size for table in self.tables)
 
+    def seeing_area(self) -> float:
+        """Area of all elements, each by the share of its rays that meet anything, scene units squared.
+
+        The first ray that does is left out, of those that do and of all: on a ground a mile off, by chance one meets a
+        house, and would count for acres.
+        """
+        area = 0.0
+        for table in self.tables:
+            met = (table.hits >= 0).sum(axis=1)
+            share = np.maximum(met - 1, 0) / np.maximum(table.valid - 1, 1)
+            area += float(self.tree.areas(table.element >> 1) @ share)
+        return area
+
     def has_row(self) -> NDArray[np.bool_]:
         """Whether each element has been traced, (2 * nodes,)."""
         known = np.zeros(2 * len(self.tree), dtype=bool)

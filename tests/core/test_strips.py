@@ -47,7 +47,9 @@ def test_a_ball_has_no_outline():
 def test_no_face_of_a_strip_is_longer_than_a_patch():
     floor = exact.rectangle("floor", (-2, -2, 0), (4, 0, 0), (0, 4, 0), reflectance=0.3)
     leg = block("leg", (0, 0, 0.5), (0.03, 0.03, 2.0), reflectance=0.3)
-    result = bake(Scene((floor, leg), np.ones(3)), BakeSettings(quality="DRAFT"))
+    # Without it, the sizes would be made for the leg alone: of a floor under the sky little sees anything.
+    roof = exact.rectangle("roof", (-2, -2, 3), (0, 4, 0), (4, 0, 0), reflectance=0.3)
+    result = bake(Scene((floor, leg, roof), np.ones(3)), BakeSettings(quality="DRAFT"))
     mesh = result.meshes[1]
     corners = mesh.vertices[mesh.triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()

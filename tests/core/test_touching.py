@@ -66,7 +66,9 @@ def test_a_cupboard_against_a_wall_costs_no_more_than_one_a_step_off():
 def test_a_wall_thinner_than_the_faces_it_stands_on_hides_what_is_under_it():
     ground = exact.rectangle("ground", (-4, -4, 0), (8, 0, 0), (0, 8, 0), reflectance=0.3)
     wall = block("wall", (0.04, -1.53, 0.0), (0.11, 1.47, 1.0), reflectance=0.3)
-    result = bake(Scene((ground, wall), np.ones(3)), BakeSettings(quality="GOOD"))
+    # Without it little would see anything, and the sizes would be made for the wall alone.
+    screen = block("screen", (-3.9, -3.9, 0.0), (-3.8, 3.9, 4.0), reflectance=0.3)
+    result = bake(Scene((ground, wall, screen), np.ones(3)), BakeSettings(quality="GOOD"))
     mesh = result.meshes[0]
     middle = mesh.vertices[mesh.triangles].mean(axis=1)
     under = (middle[:, 0] > 0.05) & (middle[:, 0] < 0.10) & (np.abs(middle[:, 1]) < 1.4)
