@@ -17,7 +17,7 @@ from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUT
 from .animation import FRAME_OUTPUTS, bake_frames, file_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_writable, replaced
-from .participants import rendered_objects
+from .participants import is_stamp, rendered_objects
 from .record import source_of
 from .settings import bake_settings, keep_settings
 from .targets import shows_surfaces
@@ -232,7 +232,7 @@ def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettin
 
 def _objects(names: list[str] | None, context: bpy.types.Context) -> list[bpy.types.Object]:
     if names is None:
-        meshes = [obj for obj in rendered_objects(context.view_layer) if shows_surfaces(obj)]
+        meshes = [obj for obj in rendered_objects(context.view_layer) if shows_surfaces(obj) and not is_stamp(obj)]
         if not meshes:
             raise CommandError("The scene has nothing with faces that renders")
         return sorted(meshes, key=lambda obj: obj.name_full)

@@ -22,6 +22,11 @@ def rendered_objects(view_layer: bpy.types.ViewLayer) -> set[bpy.types.Object]:
     return {obj for obj in found if not hidden_in_render(obj) and not is_output(obj)}
 
 
+def is_stamp(obj: bpy.types.Object) -> bool:
+    """Return whether `obj` is there to be instanced on its parent's vertices or faces, and does not render itself."""
+    return obj.parent is not None and obj.parent.instance_type in {"VERTS", "FACES"}
+
+
 def _rendered_layer_collections(view_layer: bpy.types.ViewLayer) -> Iterator[bpy.types.LayerCollection]:
     pending = [view_layer.layer_collection]
     while pending:
@@ -77,7 +82,7 @@ class Participants:
         if is_output(original) or not instance.show_self:
             return False
         if not instance.is_instance:
-            return original in self.objects
+            return original in self.objects and not is_stamp(original)
         parent = instance.parent.original
         if parent not in self.objects:
             return False

@@ -19,6 +19,7 @@ from tests.blender.making import (
     diffuse_material,
     emission_material,
     node_material,
+    select_also,
     use_image,
 )
 
@@ -339,11 +340,34 @@ def test_instances_of_geometry_nodes_take_part(made_of):
         assert len(extraction.targets) == 1
 
 
-def test_vertex_instances_take_part_beside_the_object_itself_as_in_cycles():
+@pytest.mark.parametrize(("kind", "instances"), [("VERTS", 4), ("FACES", 1)])
+def test_what_is_instanced_on_vertices_or_faces_does_not_take_part_itself_as_in_cycles(kind, instances):
     ground, leaf = add_plane("Ground"), add_plane("Leaf")
-    leaf.parent, ground.instance_type = ground, "VERTS"
-    names = [mesh.name for mesh in extracted(ground).scene.meshes]
-    assert names.count("Leaf") == 4 + 1
+    leaf.parent, ground.instance_type = ground, kind
+    assert [mesh.name for mesh in extracted(ground).scene.meshes].count("Leaf") == instances
+    ground.hide_render = True
+    assert [mesh.name for mesh in extracted(add_cube()).scene.meshes] == ["Cube"]
+
+
+def test_a_shadow_of_what_is_instanced_on_vertices_is_where_cycles_throws_it(monkeypatch):
+    from tests.blender import test_lamps
+
+    # The question is whether there is a shadow, which few samples of a sun tell.
+    monkeypatch.setattr(test_lamps, "SAMPLES", 4)
+    floor = test_lamps.add_room()
+    bpy.data.objects.remove(bpy.data.objects["Board"])
+    test_lamps.add_lamp("SUN", energy=3.0, angle=0.0)
+    ground, box = add_plane("Ground"), add_cube("Box")
+    for vertex in ground.data.vertices:
+        # The shadow's edges fall between the floor's vertices, which are 0.2 apart.
+        vertex.co.x = vertex.co.y = 0.5
+    box.parent, ground.instance_type = ground, "VERTS"
+    box.scale, box.location = (0.25, 0.25, 0.25), (0.0, 0.0, 1.0)
+    ground.show_instancer_for_render = False
+    select_also(floor)
+    dark = [test_lamps.by_cycles(floor) < 0.5, test_lamps.by_us(floor) < 0.5]
+    assert 4 <= dark[0].sum() <= 25
+    np.testing.assert_array_equal(*dark)
 
 
 @pytest.mark.parametrize("in_render", [True, False])
@@ -351,8 +375,8 @@ def test_an_instancer_is_itself_there_as_it_renders_whatever_the_viewport_shows(
     ground, leaf = add_plane("Ground"), add_plane("Leaf")
     leaf.parent, ground.instance_type = ground, "FACES"
     ground.show_instancer_for_render, ground.show_instancer_for_viewport = in_render, not in_render
-    names = [mesh.name for mesh in extracted(leaf).scene.meshes]
-    assert names.count("Ground") == in_render and names.count("Leaf") == 2
+    names = [mesh.name for mesh in extracted(add_cube()).scene.meshes]
+    assert names.count("Ground") == in_render and names.count("Leaf") == 1
     assert ground.show_instancer_for_viewport is not in_render
 
 
