@@ -105,6 +105,7 @@ def refine(
     tree, full = transport.tree, False
     rounds: list[Round] = []
     large = fresh = _large(tree, smallest)
+    unmet = 0
     while True:
         fragments, rays_before, rows = len(tree.patches()), transport.rays.rays, 0
         trace = not (rounds and fresh.any())
@@ -113,12 +114,13 @@ def refine(
                 transport.drop_split_rows()
             known = transport.row_count()
             rows = trace_all(transport, seeds, report)
+            unmet = int(np.count_nonzero(_untraced(transport)[tree.patches()]))
             pairs = transport.shares_to(np.repeat(large, 2), known)
         else:
             pairs = transport.shares_to(np.repeat(fresh, 2))
         highest = _highest_factors(transport, pairs, threshold)
         flagged = np.flatnonzero(highest > threshold)
-        full |= len(flagged) > 0 and _rays_after(transport, flagged) > most_rays
+        full |= len(flagged) > 0 and _rays_after(transport, flagged, unmet) > most_rays
         if full:
             flagged = flagged[:0]
         moved = 0
@@ -134,10 +136,15 @@ def refine(
         fresh = large & ~before
 
 
-def _rays_after(transport: Transport, flagged: Ints) -> int:
-    """Rays that are kept when the patches `flagged` have been split and all patches have their rows."""
-    traced = transport.has_row().reshape(-1, 2).any(axis=1)
-    waiting = np.count_nonzero(~traced[transport.tree.patches()]) - np.count_nonzero(~traced[flagged])
+def _untraced(transport: Transport) -> NDArray[np.bool_]:
+    """Nodes neither side of which has a row, (nodes,)."""
+    return ~transport.has_row().reshape(-1, 2).any(axis=1)
+
+
+def _rays_after(transport: Transport, flagged: Ints, unmet: int) -> int:
+    """Rays that are kept when the patches `flagged` have been split and all patches but the `unmet` have their rows."""
+    untraced = _untraced(transport)
+    waiting = np.count_nonzero(untraced[transport.tree.patches()]) - unmet - np.count_nonzero(untraced[flagged])
     return int(transport.kept_rays() + (waiting + 4 * len(flagged)) * transport.rays_per_row)
 
 

@@ -3,13 +3,14 @@
 """The paper's loop: what is split, what is kept, what is traced, and how it ends."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from radiosity_bake.core import refinement
 from radiosity_bake.core.transport import Transport
 
-from tests.core.building import hits_by_row, inside_weights, node_triangles, room_with_block, transport_of
+from tests.core.building import grid, hits_by_row, inside_weights, node_triangles, room_with_block, transport_of
 from tests.scenes import exact
 
 RAYS = 64
@@ -267,6 +268,24 @@ def test_the_memory_limit_ends_the_subdivision_and_says_so():
         assert rounds.ended == refinement.LIMIT_MET
         assert len(transport.tree.leaves()) <= 300
         assert transport.has_row()[seeds(transport)()].all()
+
+
+def test_what_no_ray_meets_takes_nothing_off_the_memory_limit(room):
+    # 2,048 triangles behind the room's walls, which are not baked: their rows would take most of what is allowed.
+    inside = room_with_block()
+    far = grid("far", 32)
+    far = replace(far, vertices=far.vertices + [0.0, 0.0, 9.0])
+    allowed = int(1.3 * RAYS * room[0].row_count())
+    transport = prepared(replace(inside, meshes=(*inside.meshes, far)), 0.12)
+    own = sum(len(mesh.triangles) for mesh in inside.meshes)
+
+    def of_the_room():
+        elements = seeds(transport)()
+        return elements[transport.tree.triangle[elements >> 1] < own]
+
+    rounds = refinement.refine(transport, of_the_room, 0.02, 0.12, allowed)
+    assert 0.5 * allowed < RAYS * 2048
+    assert rounds.ended != refinement.LIMIT_MET
 
 
 def test_the_report_holds_plain_numbers(room):
