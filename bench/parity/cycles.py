@@ -47,13 +47,20 @@ def set_up(samples: int, seed: int = 0) -> None:
         setattr(scene.cycles, name, value)
 
 
-def light(things: Sequence[Any], quantity: str, samples: int, seed: int) -> list[Floats]:
+PASSES = {"DIRECT": {"DIRECT"}, "INDIRECT": {"INDIRECT"}}
+"""Of Cycles' bakes for the parts of the light that our setting `light` names; all others have both."""
+
+
+def light(things: Sequence[Any], quantity: str, samples: int, seed: int, part: str = "ALL") -> list[Floats]:
     """Return what Cycles bakes for a quantity (see `Case.quantity`): (c, 3) at the face corners of each object."""
+    passes = PASSES.get(part, {"DIRECT", "INDIRECT"})
     set_up(samples, seed)
     with own_meshes(things, quantity.endswith("Back")):
         if quantity.startswith("Irradiance"):
-            return baked(things, "DIFFUSE", {"DIRECT", "INDIRECT"})
-        reflected = baked(things, "DIFFUSE", {"DIRECT", "INDIRECT", "COLOR"})
+            return baked(things, "DIFFUSE", passes)
+        reflected = baked(things, "DIFFUSE", {*passes, "COLOR"})
+        if part == "INDIRECT":
+            return reflected
         return [a + b for a, b in zip(reflected, baked(things, "EMIT", set()), strict=True)]
 
 

@@ -33,7 +33,8 @@ def measure(case: Case, picture: Path) -> dict[str, Any]:
     things = case.build()
     bpy.context.view_layer.update()
     used = processor_seconds()
-    theirs = [cycles.light(things, case.quantity, case.samples, seed) for seed in (0, 1)]
+    part = case.settings.get("light", "ALL")
+    theirs = [cycles.light(things, case.quantity, case.samples, seed, part) for seed in (0, 1)]
     cycles_seconds = processor_seconds() - used
     seen = cycles.picture(WIDTH, HEIGHT, True) if bpy.context.scene.camera else None
     used = processor_seconds()
