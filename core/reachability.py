@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .lamps import FEW_LAMPS
-from .scene import Ints
+from .scene import Floats, Ints
 from .surfaces import Surfaces, signed_volumes
-from .visibility import RayScene
-from .walks import Steps, Walks, from_emitters, from_lamp, from_side, from_world, meets_light, through_cracks, walked
+from .visibility import Hits, RayScene
+from .walks import Steps, Walks, from_emitters, from_lamp, from_sides, from_world, meets_light, through_cracks, walked
 
 WALKS = 16384
 """Random walks started; a side that takes part in the lighting of a room meets hundreds of them."""
@@ -51,7 +51,17 @@ WIDEST_CRACK = 2e-3
 there is no light to speak of, but if it counted as lit, its outline on the floor would not be looked for."""
 
 LEAST_INDOORS = 0.8
-"""Share of the light from the outside of a lamp in a room that meets something: the room may have a window."""
+"""Share of the light from the outside of a lamp in a room that meets something, in each step: the room may have a
+window."""
+
+STEPS_INDOORS = 3
+"""A house that glows downward lights the ground first; from there most of it gets into the open."""
+
+RAYS_TO_LOOK = 64
+"""Rays that leave a side of a shell that emits, or of what it may hold, to see where it is."""
+
+MOST_HELD = 8
+"""Of the shells within the bounds of one that emits, so many of the largest are asked whether it holds them."""
 
 AGAINST_A_WALL = 0.01
 """Share of a room's extent by which furniture may stick out of it, or only touch it from within."""
@@ -71,7 +81,7 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     walks = from_emitters(surfaces, rays, WALKS, seed)
     left = shell[walks.triangle]
     is_outward = walks.back != inside[left]
-    housing = _housings(surfaces) & _is_indoors(surfaces, rays, walks.taken(np.flatnonzero(is_outward)))
+    housing = _housings(surfaces, rays, inside, walks.taken(np.flatnonzero(is_outward)), seed + 200)
     steps = _light(surfaces, rays, walks.taken(np.flatnonzero(~housing[left] | is_outward)), seed)
     visits = np.bincount(_side(surfaces, steps), minlength=2 * shells + 1)[:-1].reshape(-1, 2)
     area = np.bincount(shell, weights=surfaces.areas, minlength=shells)
@@ -118,7 +128,7 @@ def _stays_inside(surfaces: Surfaces, rays: RayScene, walks: Walks) -> NDArray[n
     shell = surfaces.shell_of_triangle
     stays = _self_lit(surfaces)[shell[walks.triangle]] & walks.back
     inward = walks.taken(np.flatnonzero(stays))
-    hits = rays.first_hits(rays.local(inward.origin), inward.direction.astype(np.float32))
+    hits = _first_met(rays, inward)
     stays[stays] = (hits.triangle >= 0) & (shell[hits.triangle] == shell[inward.triangle])
     return stays
 
@@ -158,15 +168,8 @@ def _is_reached(
     if len(asked) == 0:
         return reached.reshape(-1, 2)
     each = int(np.clip(WALKS // len(asked), FEWEST_WALKS, MOST_BACK))
-    starts = [
-        from_side(surfaces, rays, np.flatnonzero(shell == side >> 1), bool(side & 1), each, seed + 2 * k)
-        for k, side in enumerate(asked)
-    ]
-    back = walked(surfaces, rays, Walks.joined(starts), seed + 1000)
-    low, high = np.full((len(doubt), 3), np.inf), np.full((len(doubt), 3), -np.inf)
-    corners = surfaces.points[surfaces.triangles]
-    np.minimum.at(low, shell, corners.min(axis=1))
-    np.maximum.at(high, shell, corners.max(axis=1))
+    back = walked(surfaces, rays, from_sides(surfaces, rays, asked >> 1, asked & 1 == 1, each, seed), seed + 1000)
+    low, high = _bounds(surfaces)
     crack = WIDEST_CRACK * np.linalg.norm(high - low, axis=1)
     met = np.flatnonzero(np.isin(_side(surfaces, light), asked))
     arrived = np.flatnonzero(meets_light(surfaces, rays, back, shines))
@@ -213,43 +216,82 @@ def _self_lit(surfaces: Surfaces) -> NDArray[np.bool_]:
     return result
 
 
-def _housings(surfaces: Surfaces) -> NDArray[np.bool_]:
+def _housings(surfaces: Surfaces, rays: RayScene, inside: Ints, outward: Walks, seed: int) -> NDArray[np.bool_]:
     """Closed shells that emit somewhere and hold nothing, (shells,): what glows inside, nobody sees.
 
     Both sides of an emitter glow, so the inside of a lamp's housing would be the brightest place of a room; where the
     housing lies flush in a ceiling it would light the ceiling's other side. A room that emits holds other shells, or is
-    the largest shell there is, or stands in the open.
+    the largest shell there is, or stands in the open, or its normals look inward and nothing reaches into it.
+
+    Parameters
+    ----------
+    inside : (shells,) int
+        The side of each shell that looks inward.
+    outward : Walks
+        From emitters, to the outside of their shells.
     """
     shell, count = surfaces.shell_of_triangle, len(surfaces.closed)
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    corners = surfaces.points[surfaces.triangles]
-    np.minimum.at(low, shell, corners.min(axis=1))
-    np.maximum.at(high, shell, corners.max(axis=1))
+    low, high = _bounds(surfaces)
     extent = (high - low).max(axis=1)
     emits = np.bincount(shell, weights=surfaces.emission.any(axis=1), minlength=count) > 0
     housing: NDArray[np.bool_] = surfaces.closed & emits & (extent < extent.max())
-    # Of the shells that begin between the two ends of a housing along x, those that end there too in all directions.
-    order = np.argsort(low[:, 0], kind="stable")
     largest = np.flatnonzero(housing)
     largest = largest[np.argsort(-extent[largest], kind="stable")[:MOST_HOLDING]]
+    if len(largest) == 0:
+        return housing
+    housing &= _is_indoors(surfaces, rays, outward.taken(np.flatnonzero(housing[shell[outward.triangle]])), seed)
+    turned = largest[inside[largest] == 0]
+    hits = _first_met(rays, from_sides(surfaces, rays, turned, np.zeros(len(turned), bool), RAYS_TO_LOOK, seed + 2))
+    own = (hits.triangle >= 0) & (shell[hits.triangle] == turned.repeat(RAYS_TO_LOOK))
+    housing[turned[own.reshape(-1, RAYS_TO_LOOK).all(axis=1)]] = False
+    # Of the shells that begin between the two ends of a housing along x, those that end there too in all directions.
+    order = np.argsort(low[:, 0], kind="stable")
     slack = AGAINST_A_WALL * extent[:, None]
     first = np.searchsorted(low[order, 0], (low - slack)[:, 0], side="left")
     last = np.searchsorted(low[order, 0], high[:, 0], side="right")
     size = (high - low + slack).prod(axis=1)
+    holders, held = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
     for candidate in largest:
         near = order[first[candidate] : last[candidate]]
-        inside = (low[near] >= (low - slack)[candidate]).all(axis=1) & (high[near] <= (high + slack)[candidate]).all(
+        within = (low[near] >= (low - slack)[candidate]).all(axis=1) & (high[near] <= (high + slack)[candidate]).all(
             axis=1
         )
         # A second lamp in the same place is none that it holds.
-        housing[candidate] = not np.any(inside & (size[near] < 0.5 * size[candidate]))
+        within &= size[near] < 0.5 * size[candidate]
+        found = near[within]
+        found = found[np.argsort(-size[found], kind="stable")[:MOST_HELD]]
+        holders.append(np.full(len(found), candidate))
+        held.append(found)
+    holder, one = np.concatenate(holders), np.concatenate(held)
+    # What stands in the middle of a ring lies within its bounds, but sees it from outside.
+    for side in (0, 1) if len(one) else ():
+        walks = from_sides(surfaces, rays, one, np.full(len(one), side == 1), RAYS_TO_LOOK, seed + 4 + side)
+        hits = _first_met(rays, walks)
+        looks_at = (shell[hits.triangle] == holder.repeat(RAYS_TO_LOOK)) & (hits.triangle >= 0)
+        looks_at &= hits.back == inside[holder].repeat(RAYS_TO_LOOK)
+        housing[holder[looks_at.reshape(-1, RAYS_TO_LOOK).any(axis=1)]] = False
     return housing
 
 
-def _is_indoors(surfaces: Surfaces, rays: RayScene, walks: Walks) -> NDArray[np.bool_]:
-    """Shells whose light outward meets something nearly always, (shells,), by the first step of walks that go there."""
-    hits = rays.first_hits(rays.local(walks.origin), walks.direction.astype(np.float32))
-    shell, count = surfaces.shell_of_triangle[walks.triangle], len(surfaces.closed)
-    met = np.bincount(shell, weights=hits.triangle >= 0, minlength=count)
-    result: NDArray[np.bool_] = met >= LEAST_INDOORS * np.bincount(shell, minlength=count)
+def _is_indoors(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int) -> NDArray[np.bool_]:
+    """Shells whose light outward meets something step after step, nearly always, (shells,)."""
+    left = surfaces.shell_of_triangle[walks.triangle]
+    steps = walked(surfaces, rays, walks, seed, STEPS_INDOORS)
+    count = len(surfaces.closed)
+    lost = np.bincount(left[steps.walk[steps.triangle < 0]], minlength=count)
+    result: NDArray[np.bool_] = lost <= (1.0 - LEAST_INDOORS**STEPS_INDOORS) * np.bincount(left, minlength=count)
     return result
+
+
+def _bounds(surfaces: Surfaces) -> tuple[Floats, Floats]:
+    """Lowest and highest coordinates of each shell, (shells, 3)."""
+    count = len(surfaces.closed)
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    corners = surfaces.points[surfaces.triangles]
+    np.minimum.at(low, surfaces.shell_of_triangle, corners.min(axis=1))
+    np.maximum.at(high, surfaces.shell_of_triangle, corners.max(axis=1))
+    return low, high
+
+
+def _first_met(rays: RayScene, walks: Walks) -> Hits:
+    return rays.first_hits(rays.local(walks.origin), walks.direction.astype(np.float32))

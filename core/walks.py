@@ -102,12 +102,12 @@ class Steps:
         return order[first[way] + np.arange(len(way)) - np.repeat(np.cumsum(count) - count, count)], way
 
 
-def walked(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int) -> Steps:
-    """Follow walks until they leave the scene, meet what reflects nothing, or are `LONGEST_WALK` steps long."""
+def walked(surfaces: Surfaces, rays: RayScene, walks: Walks, seed: int, longest: int = LONGEST_WALK) -> Steps:
+    """Follow walks until they leave the scene, meet what reflects nothing, or are so many steps long."""
     number = np.arange(len(walks.triangle))
     parts = []
     far = 2.0 * sphere_around(surfaces)[1]
-    for bounce in range(LONGEST_WALK):
+    for bounce in range(longest):
         if len(number) == 0:
             break
         hits = rays.first_hits(rays.local(walks.origin), walks.direction.astype(np.float32))
@@ -157,13 +157,20 @@ def from_emitters(surfaces: Surfaces, rays: RayScene, count: int, seed: int) -> 
     return leaving(surfaces, rays, triangle, back, weights, seed + 2)
 
 
-def from_side(surfaces: Surfaces, rays: RayScene, triangles: Ints, back: bool, count: int, seed: int) -> Walks:
-    """So many walks spread evenly over one side of triangles (k,)."""
-    area = np.cumsum(surfaces.areas[triangles])
-    drawn = hashed(np.arange(count), 3, seed)
-    place = np.searchsorted(area, (np.arange(count) + drawn[:, 0]) / count * area[-1], side="right")
-    triangle = triangles[np.minimum(place, len(triangles) - 1)]
-    return leaving(surfaces, rays, triangle, np.full(count, back), triangle_weights(drawn[:, 1:3]), seed + 1)
+def from_sides(
+    surfaces: Surfaces, rays: RayScene, shells: Ints, back: NDArray[np.bool_], count: int, seed: int
+) -> Walks:
+    """So many walks from each of some sides of shells (k,), spread evenly over it, those of a side together."""
+    order = np.argsort(surfaces.shell_of_triangle, kind="stable")
+    area = surfaces.areas[order]
+    up_to = np.cumsum(area)
+    first, last = (np.searchsorted(surfaces.shell_of_triangle[order], shells, side=end) for end in ("left", "right"))
+    before = up_to[first] - area[first]
+    drawn = hashed(np.arange(len(shells) * count), 3, seed)
+    step = (np.arange(count) + drawn[:, 0].reshape(-1, count)) / count
+    place = np.searchsorted(up_to, before[:, None] + step * (up_to[last - 1] - before)[:, None], side="right")
+    triangle = order[np.clip(place, first[:, None], last[:, None] - 1)].ravel()
+    return leaving(surfaces, rays, triangle, np.repeat(back, count), triangle_weights(drawn[:, 1:3]), seed + 1)
 
 
 def from_world(surfaces: Surfaces, count: int, seed: int) -> Walks:

@@ -101,6 +101,41 @@ def test_a_room_that_glows_itself_is_lit_inside():
     assert lit(glowing, block("block", (0.5, 0.5, 0.0), (1, 1, 0.8)), floor, world=(0.1, 0.1, 0.1))["room"][0]
 
 
+DOME = exact.closed_room((40, 40, 40), reflectance=0.5, name="dome")
+DOME = replace(DOME, vertices=DOME.vertices - 20.0)
+
+
+def test_an_empty_room_that_glows_is_lit_inside_under_a_dome_where_its_normals_look_inward():
+    ceiling = ROOM.vertices[ROOM.triangles][..., 2].min(axis=1) == 2.0
+    glowing = replace(ROOM, emission=np.ones_like(ROOM.emission) * ceiling[:, None])
+    assert lit(glowing, DOME)["room"] == (True, True)
+
+
+def test_an_empty_house_that_glows_downward_onto_the_ground_is_lit_inside():
+    # All light outward meets the ground, but from there most of it gets into the open.
+    bottom = ROOM.vertices[ROOM.triangles][..., 2].max(axis=1) == 0.0
+    glowing = flipped(replace(ROOM, emission=np.ones_like(ROOM.emission) * bottom[:, None]))
+    wide = exact.rectangle("ground", (-100, -100, -0.5), (200, 0, 0), (0, 200, 0), reflectance=0.5)
+    assert lit(glowing, wide)["room"] == (True, True)
+
+
+def test_a_ring_that_glows_does_not_hold_the_lamp_in_its_middle():
+    # A square ring, closed: four bars around a hole.
+    outer, inner = [(0, 0), (1, 0), (1, 1), (0, 1)], [(0.3, 0.3), (0.7, 0.3), (0.7, 0.7), (0.3, 0.7)]
+    corners = [(x + 0.5, y + 0.5, z) for z in (1.4, 1.5) for x, y in outer + inner]
+    triangles = []
+    for k in range(4):
+        j = (k + 1) % 4
+        for a, b, c, d in ((k, j, 8 + j, 8 + k), (4 + j, 4 + k, 12 + k, 12 + j), (8 + k, 8 + j, 12 + j, 12 + k)):
+            triangles += [(a, b, c), (a, c, d)]
+        triangles += [(j, k, 4 + k), (j, 4 + k, 4 + j)]
+    ring = surface_mesh("ring", corners, triangles, reflectance=0.5, emission=(5.0, 5.0, 5.0))
+    spot = block("spot", (0.95, 0.95, 1.42), (1.05, 1.05, 1.48), emission=5.0)
+    sides = lit(ROOM, ring, spot)
+    assert sides["ring"] == sides["spot"] == (True, False)
+    assert sides["room"] == (True, False)
+
+
 def test_the_world_lights_a_solid_outside_and_an_open_plane_on_both_sides():
     plane = exact.rectangle("plane", (-2, -2, -1), (4, 0, 0), (0, 4, 0), reflectance=0.5)
     sides = lit(block("block", (0, 0, 0), (1, 1, 1)), plane, world=(1, 1, 1))
