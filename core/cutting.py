@@ -35,6 +35,9 @@ BEFORE_CUT = 0.75
 """Share of the way from the seen end to the cut at which light is gathered, to be drawn on in a straight line: right at
 the foot of an object is a contact shadow that is often narrower than the face, and would darken all of it."""
 
+SHORT_WAY = 0.05
+"""Share of an edge up to which a cut lies on the same outline as the edge's seen end."""
+
 BEYOND_CUT = 0.004
 """Share of the edge beyond the cut at which the hidden side is gathered: a few times what the search leaves open."""
 
@@ -258,9 +261,21 @@ def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Rece
     return before, _along(faces, places, cuts, np.minimum(cuts.change + BEYOND_CUT, 1.0))
 
 
-def drawn_to_cut(at_corner: Floats, before_cut: Floats) -> Floats:
-    """Light at cuts, (k, 3), from that at their seen ends and at `BEFORE_CUT` of the way."""
-    return np.maximum(at_corner + (before_cut - at_corner) / BEFORE_CUT, 0.0)
+def drawn_to_cut(at_corner: Floats, before_cut: Floats, change: Floats, touching: NDArray[np.bool_]) -> Floats:
+    """Light at cuts, (k, 3), from that at their seen ends and at `BEFORE_CUT` of the way.
+
+    From a seen end that is on the outline itself, it is that end's: on so short a way there is the contact shadow
+    alone, and under an object that does not quite touch, darkness.
+
+    Parameters
+    ----------
+    change : (k,) float
+        Where the cuts are on their edges.
+    touching : (k,) bool
+        Whether the seen ends are on an outline.
+    """
+    drawn = np.maximum(at_corner + (before_cut - at_corner) / BEFORE_CUT, 0.0)
+    return np.where((touching & (change < SHORT_WAY))[:, None], at_corner, drawn)
 
 
 def values_on_outlines(

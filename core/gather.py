@@ -43,7 +43,7 @@ SMALLER_FOR_CUTS = 8.0
 """Times that faces may be smaller than others where an outline crosses them. What covers a place must not depend on it:
 at the rim of a lamp a millimetre under a ceiling, the light in the gap would show there alone."""
 
-TOUCHING = 1e-3
+TOUCHING = 1e-2
 """Share of the size of the smallest face within which rays end where something stands on a place's very edge, and"""
 
 LEAST_TOUCHING_SHARE = 0.15

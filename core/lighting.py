@@ -246,7 +246,8 @@ def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]
         return shown.faces, shown.face, shown.corner_irradiance()
     count, gathered, edges = len(shown.faces.triangle), shown.gathered, cuts.edges
     fronts = gathered.irradiance[shown.places.of_corner[:count]]
-    seen = drawn_to_cut(gathered.irradiance[edges.seen], cuts.seen.irradiance)
+    start = edges.seen
+    seen = drawn_to_cut(gathered.irradiance[start], cuts.seen.irradiance, edges.change, gathered.touching[start])
     whole = np.flatnonzero(edges.whole)
     corner, light = values_on_outlines(
         shown.places.of_corner[:count], edges.taken(whole), seen[whole], ~cuts.seen.hidden[whole]
