@@ -117,7 +117,7 @@ def world_sky_without_sun() -> list[Any]:
     return [floor]
 
 
-@case("Room with a window under a sky with sun", samples=8192)
+@case("Room with a window under a sky with sun", samples=2048)
 def world_window() -> list[Any]:
     """All light comes through a window, most of it as a sunbeam."""
     floor = windowed_room()
