@@ -30,7 +30,7 @@ from .scenes import corridor, even_size, statue
 from .stopwatch import Cost, timed_once
 
 PATCHES = (1_000, 4_000, 16_000, 64_000, 256_000)
-"""Asked for; the corridor's walls are split together, which makes 1,172 to 300,160 of them."""
+"""Asked for; the corridor's walls are split together, which makes 1,172 to 299,760 of them."""
 
 MEMORY_LIMIT = 4096
 """MiB for the rays: at the default of 2048 so many patches would be given half of the rays of GOOD each."""

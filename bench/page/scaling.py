@@ -26,6 +26,7 @@ def scaling(measured: Document) -> Lines:
     lines: Lines = []
     if len(rows) > 1:
         whole, last = exponents(rows)
+        busy = max(row["others"] for row in rows)
         lines += [
             "### To 300,000 patches",
             "",
@@ -33,7 +34,8 @@ def scaling(measured: Document) -> Lines:
                 f"The corridor at {measured['quality']}, uniformly cut, each bake in a process of its own, measured "
                 f"{measured['run'][:10]} by `python -m bench.scaling`. The memory limit is "
                 f"{measured['memory_limit']:,} MiB, so that all patches get the same number of rays. Time "
-                f"grows as patches to the power of {whole:.2f} over the whole range, of {last:.2f} in the last step."
+                f"grows as patches to the power of {whole:.2f} over the whole range, of {last:.2f} in the last step. "
+                f"Others kept up to {busy:.0%} of the processors busy meanwhile."
             ),
             "",
             *table(
