@@ -61,7 +61,9 @@ def read_image(image: bpy.types.Image, extension: str, closest: bool, alpha_used
         if image.colorspace_settings.name != "sRGB":
             raise UnreadableImageError(f'"{image.name}" is in the colour space {image.colorspace_settings.name}')
         smooth = not closest and max(width, height) <= MOST_SMOOTHED
-        pixels[..., :3] = _averaged_from_srgb(pixels[..., :3]) if smooth else _from_srgb(pixels[..., :3])
+        pixels[..., :3] = (
+            _averaged_from_srgb(pixels[..., :3], extension == "REPEAT") if smooth else _from_srgb(pixels[..., :3])
+        )
     while max(pixels.shape[:2]) > MOST_PIXELS:
         pixels = halved(pixels)
     return image_of(pixels, extension, closest)
@@ -78,22 +80,25 @@ def _with_four_channels(pixels: Singles) -> Singles:
     return opaque
 
 
-def _averaged_from_srgb(pixels: Singles) -> Singles:
+def _averaged_from_srgb(pixels: Singles, repeated: bool) -> Singles:
     """Return the mean light over each pixel of an sRGB image, by sixteen places in it.
 
     Cycles passes from pixel to pixel in sRGB, where the way between black and white is darker than their mean.
     """
     light = np.zeros_like(pixels)
-    for line in _between(pixels, axis=1):
-        for place in _between(line, axis=0):
+    for line in _between(pixels, 1, repeated):
+        for place in _between(line, 0, repeated):
             light += _from_srgb(place)
     return light / 16.0
 
 
-def _between(pixels: Singles, axis: int) -> Iterator[Singles]:
+def _between(pixels: Singles, axis: int, repeated: bool) -> Iterator[Singles]:
     """Give what lies 3/8 and 1/8 of a pixel to both sides of the middles of all, along one axis."""
     for way in (-1, 1):
         neighbour = np.roll(pixels, way, axis=axis)
+        if not repeated:
+            border = (slice(None),) * axis + (0 if way == 1 else -1,)
+            neighbour[border] = pixels[border]
         for share in (0.125, 0.375):
             yield (1.0 - share) * pixels + share * neighbour
 

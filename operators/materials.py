@@ -205,7 +205,7 @@ class _ShaderReader:
         if node.type == "MIX_SHADER":
             share = self._share(node, "Fac", groups)
             first, second = self._shader(node.inputs[1], groups), self._shader(node.inputs[2], groups)
-            return tuple(combined(_mixed, share, a, b) for a, b in zip(first, second, strict=True))
+            return tuple(_mix(share, a, b) for a, b in zip(first, second, strict=True))
         if node.type == "ADD_SHADER":
             first, second = self._shader(node.inputs[0], groups), self._shader(node.inputs[1], groups)
             return tuple(combined(np.add, a, b) for a, b in zip(first, second, strict=True))
@@ -408,6 +408,11 @@ def _default(socket) -> Value:
 
 def _number(value):
     return value if isinstance(value, float) else luminance(value)
+
+
+def _mix(share: Value, first: Value, second: Value) -> Value:
+    """Return a mix of two colours, which does not vary where both are the same."""
+    return first if _alike(first, second) else combined(_mixed, share, first, second)
 
 
 def _mixed(share, first, second):

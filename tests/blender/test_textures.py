@@ -204,7 +204,8 @@ def test_an_image_times_an_image_is_their_product_place_by_place():
     def product(tree):
         return mixed(tree, image_node(tree), image_node(tree, vector=second_map(tree)), "MULTIPLY", 1.0)
 
-    assert_as_in_cycles(painted(product))
+    # It changes as fast as both together.
+    assert_as_in_cycles(painted(product), step=2.0 * STEP)
 
 
 def test_an_image_may_be_the_factor_of_a_mix():
