@@ -122,6 +122,7 @@ _WITHOUT_A_MESH = _Reason(
     "have no meshes of their own; Refined Mesh bakes them",
 )
 _WITHOUT_FACES = _Reason("has no faces", "have no faces")
+_CLEAR = _Reason("is transparent all over", "are transparent all over")
 _NOT_RECEIVING = _Reason("does not receive light by its own settings", "do not receive light by their own settings")
 _NOT_RENDERED = _Reason("is not shown in renders", "are not shown in renders")
 
@@ -172,6 +173,7 @@ def _skip_missing(wanted: list[bpy.types.Object], reader: "_Reader", skipped: di
     for obj in wanted:
         if obj.session_uid not in found:
             why = _WITHOUT_FACES if obj in reader.shown else _NOT_RENDERED
+            why = _CLEAR if obj in reader.clear else why
             skipped.setdefault(why, []).append(obj.name)
 
 
@@ -275,6 +277,7 @@ class _Reader:
         self._hairy: dict[str, None] = {}
         self._unreceiving: dict[tuple[str, str], None] = {}
         self.shown: set[bpy.types.Object] = set()
+        self.clear: set[bpy.types.Object] = set()
 
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
@@ -448,9 +451,14 @@ class _Reader:
         glow = None
         if not role.lights:
             appearance, glow = appearance.without_light()
-        if entry.owner is not None:
+        owner = entry.owner
+        if owner is not None and appearance.clear is not None and appearance.clear.all():
+            # Colours on it would hide what is seen through it.
+            self.clear.add(owner)
+            owner = None
+        if owner is not None:
             part = Part(len(self.meshes), local, entry.materials, matrix, entry.layers, glow)
-            self._parts.setdefault(entry.owner, []).append(part)
+            self._parts.setdefault(owner, []).append(part)
         vertices, normals = placed(local, matrix)
         self._groups_of_meshes.append(entry.light_group)
         self.meshes.append(
@@ -465,7 +473,7 @@ class _Reader:
                 emission_texture=appearance.emission_texture,
                 clear=appearance.clear,
                 front_only=appearance.front_only,
-                baked=entry.owner is not None,
+                baked=owner is not None,
                 seen=role.seen,
                 shadow=role.shadow,
             )

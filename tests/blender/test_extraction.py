@@ -427,3 +427,12 @@ def test_a_selected_object_that_does_not_render_is_named():
     hidden.hide_render = True
     (warning,) = extracted(cube, hidden).warnings
     assert '"Hidden"' in warning and "renders" in warning
+
+
+def test_what_is_transparent_all_over_is_not_baked_and_hides_nothing():
+    air = node_material("Air", "ShaderNodeBsdfTransparent")
+    extraction = extracted(add_cube("Glass", materials=[air]), add_plane("Floor"))
+    assert [target.name for target in extraction.targets] == ["Floor"]
+    assert extraction.warnings == ('"Glass" was skipped: it is transparent all over',)
+    glass = next(mesh for mesh in extraction.scene.meshes if mesh.name == "Glass")
+    assert glass.clear.all() and not glass.baked
