@@ -70,7 +70,7 @@ def title_of(path: str) -> str:
 
 def shipped_files() -> list[str]:
     """Return every .blend that ships with Blender."""
-    return [FACTORY, *sorted(str(path) for path in Path(bpy.__file__).parent.rglob("*.blend"))]
+    return [FACTORY, *sorted(str(path) for path in Path(bpy.utils.resource_path("LOCAL")).rglob("*.blend"))]
 
 
 def measured(picture: Path) -> dict[str, Any]:
