@@ -26,6 +26,9 @@ from .visibility import OFFSET, RayScene
 MOST_EACH = 2048
 """Lights that are looked at one by one: of so many it takes about as long as a cut of their tree."""
 
+MOST_TOLD = 256
+"""Lights of which each keeps what gets through of it; of more, those that rays were sent to stand for the others."""
+
 PAIRS_AT_ONCE = 2**16
 """Receivers times lights whose working arrays stay in a core's second cache."""
 
@@ -234,11 +237,52 @@ def _partly_hidden(
     weight *= (tree.shape[1, node] / found.light[draw.member, draw.pair]).repeat(draw.rays)
     ray = total.T.ravel() / shadow_rays
     visible, variance = _visible_shares(groups * size, draw, receiver, ray, seen, weight, shadow_rays)
+    uncertainty = np.sqrt(variance).reshape(groups, size)
+    if len(tree.emitter) <= MOST_TOLD:
+        return _told_apart(tree, found, draw, total[:, 0], visible, shadow_rays), uncertainty
     at = receiver.repeat(draw.rays)
+    visible = visible[_part_of_ray(draw, receiver, shadow_rays)]
     run = np.flatnonzero(np.diff(at * len(tree.emitter) + light, prepend=-1))
     through = np.add.reduceat(ray[at] * visible, run) / tree.luminance[light[run]]
-    entries = DirectLight.of(groups * size, at[run], tree.emitter[light[run]], through)
-    return entries, np.sqrt(variance).reshape(groups, size)
+    return DirectLight.of(groups * size, at[run], tree.emitter[light[run]], through), uncertainty
+
+
+def _told_apart(
+    tree: LightTree, found: Cut, draw: _Draw, total: Singles, visible: Floats, shadow_rays: int
+) -> DirectLight:
+    """What gets through of every single light of one group, whether rays were sent to it or to its neighbours.
+
+    Lights of several colours would else take the place of each other, and speckle even where nothing hides them.
+
+    Parameters
+    ----------
+    total : (size,) float32
+        The light of all.
+    visible : (parts,) float
+        See `_visible_shares`.
+    """
+    size = len(total)
+    ray = np.divide(total, shadow_rays, dtype=np.float64)[:, None]
+    width = np.divide(found.light, ray, out=np.zeros(found.light.shape), where=ray > 0.0)
+    strips = visible[len(draw.rays) :].reshape(size, -1)
+    seen_before = np.concatenate([np.zeros((size, 1)), RAYS_TOGETHER * np.cumsum(strips, axis=1)], axis=1)
+
+    def seen_up_to(place: Floats) -> Floats:
+        strip = np.clip((place / RAYS_TOGETHER).astype(np.int64), 0, strips.shape[1] - 1)
+        part = place - RAYS_TOGETHER * strip
+        before: Floats = np.take_along_axis(seen_before, strip, axis=1)
+        return before + part * np.take_along_axis(strips, strip, axis=1)
+
+    end = np.cumsum(width, axis=1)
+    through = ray * (seen_up_to(end) - seen_up_to(end - width))
+    own = np.flatnonzero(draw.rays >= RAYS_TOGETHER)
+    at = draw.member[own], draw.pair[own]
+    through[at] = found.light[at] * visible[own]
+    member, pair = np.nonzero(through > 0.0)
+    light = tree.first[found.node[pair]]
+    order = np.lexsort((light, member))
+    member, pair, light = member[order], pair[order], light[order]
+    return DirectLight.of(size, member, tree.emitter[light], through[member, pair] / tree.luminance[light])
 
 
 def _draw(found: Cut, start: Ints, total: Singles, shift: Floats, shadow_rays: int) -> _Draw:
@@ -325,7 +369,9 @@ def _numbers(draw: _Draw) -> Ints:
 def _visible_shares(
     count: int, draw: _Draw, at: Ints, light: Floats, seen: NDArray[np.bool_], weight: Singles, shadow_rays: int
 ) -> tuple[Floats, Floats]:
-    """Visible share that each ray has its part in (r,), and the variance of each receiver's light (n,).
+    """Visible shares of the p nodes and then of the strips of each receiver, and the variance of its light (n,).
+
+    Of a node that gets fewer than `RAYS_TOGETHER` rays, that of the strips that it lies in is to be taken.
 
     Parameters
     ----------
@@ -337,11 +383,9 @@ def _visible_shares(
     seen, weight : (r,)
         Of the rays.
     """
-    strips = shadow_rays // RAYS_TOGETHER + 1
-    own, pairs = draw.rays >= RAYS_TOGETHER, len(at)
+    strips, pairs = _strips(shadow_rays), len(at)
     receiver = at.repeat(draw.rays)
-    strip = pairs + receiver * strips + _numbers(draw) // RAYS_TOGETHER
-    part = np.where(own.repeat(draw.rays), np.arange(pairs).repeat(draw.rays), strip)
+    part = _part_of_ray(draw, at, shadow_rays)
     size = pairs + count * strips
     tried, got = np.bincount(part, weight, size), np.bincount(part, weight * seen, size)
     # Where no ray counts, all that the receiver has must do.
@@ -354,4 +398,22 @@ def _visible_shares(
     alone = rays_of**2 / np.maximum(rays_of - 1, 1)
     gain = np.where(np.arange(size) < pairs, LATTICE_ERROR**2 * np.sqrt(rays_of), alone)
     variance = share * (1.0 - share) * gain * light[receiver_of_part] ** 2
-    return share[part], np.bincount(receiver_of_part, variance, count)
+    return share, np.bincount(receiver_of_part, variance, count)
+
+
+def _strips(shadow_rays: int) -> int:
+    """Of each receiver."""
+    return shadow_rays // RAYS_TOGETHER + 1
+
+
+def _part_of_ray(draw: _Draw, at: Ints, shadow_rays: int) -> Ints:
+    """The node of the p that each ray is one of, or p and the number of its strip, where it gets too few, (r,).
+
+    Parameters
+    ----------
+    at : (p,) int
+        Receivers of the nodes.
+    """
+    own, pairs = draw.rays >= RAYS_TOGETHER, len(at)
+    strip = pairs + at.repeat(draw.rays) * _strips(shadow_rays) + _numbers(draw) // RAYS_TOGETHER
+    return np.where(own.repeat(draw.rays), np.arange(pairs).repeat(draw.rays), strip)

@@ -210,6 +210,21 @@ def test_thousands_of_tiny_emitters_give_the_light_of_one_as_large():
     assert found[:, 0].mean() == pytest.approx(truth.mean(), rel=2e-3)
 
 
+def test_lights_of_many_colours_do_not_speckle_where_nothing_hides_them():
+    # A screen of 36 squares, 72 triangles: more than get a ray each.
+    colours = np.random.default_rng(1).uniform(0.0, 4.0, (36, 3))
+    corners = [(x / 2, y / 2, 1.0) for x in range(-3, 3) for y in range(-3, 3)]
+    screen = [
+        exact.rectangle("square", corner, (0, 0.5, 0), (0.5, 0, 0), emission=colour)
+        for corner, colour in zip(corners, colours, strict=True)
+    ]
+    points = spread(500)
+    found, _ = direct([FLOOR, *screen], points)
+    factors = np.array([exact.rectangle_seen_from_below(points, corner, 0.5, 0.5) for corner in corners])
+    # What is left is the formula of distant lights, off by a hundredth at most for any of them.
+    np.testing.assert_allclose(found, factors.T @ colours, rtol=0.01)
+
+
 def test_emitters_of_a_colour_without_weight_in_luminance_still_shine():
     # Blue counts 7% only, and next to a bright green lamp less.
     blue = exact.rectangle("blue", (-1, 0.5, 0.7), (0, 0.2, 0), (0.2, 0, 0), emission=(0.0, 0.0, 1.0))
