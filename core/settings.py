@@ -15,7 +15,7 @@ LARGEST = 2**31 - 1
 """Largest whole number that Blender's settings hold."""
 
 OUTPUTS = ("REFINED", "ORIGINAL")
-MATERIALS = ("PLAIN", "TEXTURED")
+MATERIALS = ("AUTOMATIC", "PLAIN", "TEXTURED")
 DOMAINS = ("CORNER", "POINT")
 DATA_TYPES = ("FLOAT", "BYTE")
 LONGEST_PREFIX = 32
@@ -67,7 +67,7 @@ class BakeSettings:
         What the names of the attributes begin with.
     material : str
         Of whoever stores the result: `'PLAIN'` shows the radiosity as it is, `'TEXTURED'` the irradiance on the
-        colours and textures of the original materials.
+        colours and textures of the original materials, `'AUTOMATIC'` the latter where these vary over a surface.
     """
 
     threshold: float = 0.02
@@ -85,7 +85,7 @@ class BakeSettings:
     data_type: str = "FLOAT"
     byte_maximum: float = 0.0
     prefix: str = ""
-    material: str = "PLAIN"
+    material: str = "AUTOMATIC"
 
     def __post_init__(self) -> None:
         if not (0.0 < self.threshold <= 1.0):

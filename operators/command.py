@@ -125,7 +125,11 @@ def _parser() -> argparse.ArgumentParser:
         "--byte-maximum", type=float, metavar="BRIGHTNESS", help="what 8 bits reach up to; 0: the brightest there is"
     )
     what.add_argument("--prefix", metavar="TEXT", help="what the attributes' names begin with")
-    what.add_argument("--material", choices=MATERIALS, help="the light as it is, or on your materials' textures")
+    what.add_argument(
+        "--material",
+        choices=MATERIALS,
+        help="the light as it is, or on your materials' textures; automatic: where there are some",
+    )
     how = parser.add_argument_group("how it is baked")
     how.add_argument("--threshold", type=float, help="share of another surface's light above which one is split")
     how.add_argument(

@@ -43,6 +43,11 @@ OUTPUT_ITEMS = (
     ),
 )
 MATERIAL_ITEMS = (
+    (
+        "AUTOMATIC",
+        "Automatic",
+        "With textures where a material has some, so that they stay sharp; plain where it is of one colour",
+    ),
     ("PLAIN", "Plain", "One material shows the baked light and colours as they are, one colour for each vertex"),
     (
         "TEXTURED",

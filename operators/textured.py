@@ -14,7 +14,8 @@ from . import display
 from .attributes import IRRADIANCE, Attributes
 from .display import Shown
 from .journal import Journal
-from .materials import GREY, NOT_DIFFUSE, uses_nodes
+from .materials import GREY, NOT_DIFFUSE, material_surface, uses_nodes
+from .varying import varies
 
 _DIFFUSE = {"BSDF_DIFFUSE", "SUBSURFACE_SCATTERING", "BSDF_SHEEN", "BSDF_TOON"}
 """Shaders whose colour counts as that of a diffuse surface, as in the bake."""
@@ -47,10 +48,11 @@ class Displays:
     def __init__(self, attributes: Attributes, journal: Journal) -> None:
         self._attributes, self._journal = attributes, journal
         self._made: dict[tuple[bpy.types.Material | None, bool], bpy.types.Material] = {}
+        self._has_textures: dict[bpy.types.Material | None, bool] = {}
 
     def of(self, original: bpy.types.Material | None, both_sides: bool) -> bpy.types.Material:
         """Return the material that shows the bake on a surface with the material `original`."""
-        if self._attributes.settings.material == "PLAIN" or display.is_display(original):
+        if display.is_display(original) or not self._shows_textures(original):
             return self._plain(both_sides)
         key = (original, both_sides)
         if key not in self._made:
@@ -60,6 +62,16 @@ class Displays:
                 # Its colours are in the radiosity, one for each vertex.
                 self._made[key] = self._plain(both_sides)
         return self._made[key]
+
+    def _shows_textures(self, original: bpy.types.Material | None) -> bool:
+        settings = self._attributes.settings
+        if settings.material != "AUTOMATIC":
+            return settings.material == "TEXTURED"
+        if original not in self._has_textures:
+            surface = material_surface(original)
+            self._has_textures[original] = bool(surface.unread) or varies(*surface.colours())
+        # Lighting alone is asked for to be seen without colours.
+        return self._has_textures[original] and settings.light != "IRRADIANCE"
 
     def _shown(self, quantity: str, both_sides: bool) -> Shown:
         named = self._attributes

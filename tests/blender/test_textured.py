@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Euler
+from radiosity_bake.operators import display
 
 from tests.blender.making import (
     add_object,
@@ -139,9 +140,9 @@ CASES = {
     ),
     "a mix": (mixed_material, 0.75 * np.array([0.2, 0.4, 0.6]) * IRRADIANCE + np.array([2.0, 1.0, 0.5])),
     # What is let through is the world, which is white.
-    "transparent": (
-        lambda: node_material("Veil", "ShaderNodeBsdfPrincipled", Base_Color=(0.5, 0.5, 0.5, 1.0), Alpha=0.0),
-        np.ones(3),
+    "transparent in half": (
+        lambda: node_material("Veil", "ShaderNodeBsdfPrincipled", Base_Color=(0.5, 0.5, 0.5, 1.0), Alpha=0.5),
+        0.5 * 0.5 * IRRADIANCE + 0.5 * np.ones(3),
     ),
     "glass": (lambda: node_material("Glass", "ShaderNodeBsdfGlass"), np.zeros(3)),
 }
@@ -175,6 +176,16 @@ def test_plain_shows_the_radiosity_of_either_side(tmp_path):
     assert rendered(tmp_path) == pytest.approx(np.broadcast_to(RADIOSITY, (PIXELS, PIXELS, 3)), rel=TOLERANCE)
     below = rendered(tmp_path, from_below=True)
     assert below == pytest.approx(np.broadcast_to(2.0 * RADIOSITY, (PIXELS, PIXELS, 3)), rel=TOLERANCE)
+
+
+@pytest.mark.parametrize(
+    ("paint", "light", "textures"),
+    [(textured_material, "ALL", True), (textured_material, "IRRADIANCE", False), (diffuse_material, "ALL", False)],
+)
+def test_by_itself_it_shows_textures_where_there_are_some(paint, light, textures):
+    bpy.context.scene.radiosity.light = light
+    shown = bake(paint(), material="AUTOMATIC").active_material
+    assert (shown[display.MARK] == "TEXTURED") == textures
 
 
 def test_shaders_inside_a_group_show_the_radiosity(tmp_path):
