@@ -130,7 +130,7 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 def _ray_scene(
     surfaces: Surfaces, seen: NDArray[np.bool_], shadow: NDArray[np.bool_], settings: BakeSettings
 ) -> RayScene:
-    return RayScene(surfaces.traced_points(), surfaces.triangles, settings.threads, seen, shadow)
+    return RayScene(surfaces.traced_points(), surfaces.triangles, settings.threads, seen, shadow, surfaces.blockers())
 
 
 def _lit_sides(surfaces: Surfaces, rays: RayScene, settings: BakeSettings) -> NDArray[np.bool_]:

@@ -15,7 +15,7 @@ from .errors import UnsolvableError
 from .geometry import order_along_curve
 from .patches import PatchTree
 from .rows import ESCAPED, Cover, Shares
-from .scene import Floats, Ints, Texture
+from .scene import UNLINKED, Floats, Ints, Texture
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
 from .textures import mean_colours
@@ -295,13 +295,22 @@ def _direct_at(
     """Direct light at points of elements, (k, p, 3), as of k p receivers."""
     count = points.shape[1]
     order = order_along_curve(points[:, 0])
+    mesh = transport.surfaces.mesh_of_triangle[transport.tree.triangle[elements >> 1]]
 
     def work(first: int, last: int) -> DirectLight:
         part = order[first:last]
         at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
         keys = (elements[part, None] * count + np.arange(count)).ravel()
         light, _ = direct_light(
-            emitters, transport.rays, at, axis, axis, keys, SHADOW_RAYS_PER_POINT, transport.seed + 52
+            emitters,
+            transport.rays,
+            at,
+            axis,
+            axis,
+            keys,
+            SHADOW_RAYS_PER_POINT,
+            transport.seed + 52,
+            np.repeat(mesh[part], count),
         )
         return light
 
@@ -318,27 +327,36 @@ def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Em
 
 
 def energy(
-    balance: Balance, solution: Solution, from_lamps: Floats, from_suns: Floats, surfaces: Surfaces
+    balance: Balance,
+    solution: Solution,
+    from_lamps: Floats,
+    from_suns: Floats,
+    from_linked: Floats,
+    surfaces: Surfaces,
 ) -> dict[str, float]:
     """Where the power goes, in W summed over the channels (for lengths in metres).
 
     `imbalance` is what emission, world and lamps bring in less what is absorbed and what leaves, as a share of what
-    comes in: the form factors are sampled, so it is a check on them. Of lamps, what misses every surface is not known.
+    comes in: the form factors are sampled, so it is a check on them. Of lamps, what misses every surface is not known;
+    nor is it of emission that is linked to some meshes alone, and what these get counts as emitted.
 
     Parameters
     ----------
-    from_lamps, from_suns : (m, 3) float, W m^-2 sr^-1
-        Irradiance over pi that elements get of lamps, and of the suns that stand for parts of the world.
+    from_lamps, from_suns, from_linked : (m, 3) float, W m^-2 sr^-1
+        Irradiance over pi that elements get of lamps, of the suns that stand for parts of the world, and of linked
+        emission.
     """
     area = np.pi * balance.areas[:, None]
     # What light goes through takes none of it away.
     met = area * balance.means.of(surfaces.seen[:, None].astype(np.float64))
-    emitted = float((area * balance.emission).sum())
+    linked = np.array([linking != UNLINKED for linking in surfaces.linking])[surfaces.mesh_of_triangle]
+    emission = balance.emission * (1.0 - balance.means.of(linked[:, None].astype(np.float64)))
+    emitted = float((area * emission).sum() + (met * from_linked).sum())
     world = float((met * (balance.from_world(surfaces.world) + from_suns)).sum())
     lamps = float((met * from_lamps).sum())
     reflected = float((met * solution.reflected).sum())
     absorbed = float((met * (1.0 - balance.reflectance) * solution.incident).sum())
-    escaped = float(((area * balance.emission + met * solution.reflected) * balance.escape[:, None]).sum())
+    escaped = float(((area * emission + met * solution.reflected) * balance.escape[:, None]).sum())
     total = emitted + world + lamps
     return {
         "emitted": emitted,

@@ -251,6 +251,7 @@ def _within(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights:
         codes=places.codes[corners[:, 0]],
         inward=np.zeros((len(face), 3)),
         sizes=places.sizes[corners].mean(axis=1),
+        mesh=places.mesh[corners[:, 0]],
         of_corner=np.zeros((0, 3), dtype=np.int64),
     )
 
@@ -352,6 +353,7 @@ def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Re
         codes=places.codes[cuts.seen],
         inward=inward,
         sizes=places.sizes[cuts.seen] * (1.0 - share) + places.sizes[cuts.hidden] * share,
+        mesh=places.mesh[cuts.seen],
         of_corner=np.zeros((0, 3), dtype=np.int64),
     )
 

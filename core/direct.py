@@ -22,7 +22,7 @@ from .lamps import lamp_light
 from .light_tree import LightTree, light_tree
 from .many_lights import light_of_many
 from .sampling import LATTICE_ERROR, Singles, hashed, ray_counts, sequence, triangle_lattice
-from .scene import Floats, Ints, Lamp, SunLamp
+from .scene import UNLINKED, Floats, Ints, Lamp, LightLinking, SunLamp
 from .surfaces import Surfaces
 from .visibility import OFFSET, RayScene
 
@@ -71,6 +71,10 @@ class Emitters:
         Emitters whose back is dark, and those on solids, whose backs nothing sees.
     enclosed : (k, 2) bool
         Fronts and backs that see little but other emitters.
+    linking : tuple of LightLinking
+        Those that there are,
+    linking_of : (k,) int
+        and which of them each triangle has.
     lamps : tuple of Lamp
     """
 
@@ -82,6 +86,8 @@ class Emitters:
     radiance: Floats
     one_sided: NDArray[np.bool_]
     enclosed: NDArray[np.bool_]
+    linking: tuple[LightLinking, ...]
+    linking_of: Ints
     lamps: tuple[Lamp, ...] = ()
 
     @cached_property
@@ -111,6 +117,27 @@ class Emitters:
         total = sum(weight for _, weight in found)
         return tuple((tree, weight / total) for tree, weight in found)
 
+    def linked_alone(self) -> Floats:
+        """The radiance of those triangles whose light is not for all meshes, and 0 for all else, as `strengths`."""
+        alone = np.zeros_like(self.strengths)
+        linked = np.array([linking != UNLINKED for linking in self.linking], dtype=bool)
+        alone[: len(self.triangle)] = np.where(linked[self.linking_of][:, None], self.radiance, 0.0)
+        return alone
+
+    @cached_property
+    def linked(self) -> tuple[tuple[LightLinking, Ints, Emitters], ...]:
+        """The triangles of each light linking by themselves: their numbers here, and they alone without lamps."""
+        if len(self.linking) == 1:
+            return ((self.linking[0], np.arange(len(self.triangle)), self),)
+        groups = []
+        for number, linking in enumerate(self.linking):
+            some = np.flatnonzero(self.linking_of == number)
+            names = ("triangle", "within", "corners", "normals", "areas", "radiance", "one_sided", "enclosed")
+            taken = {name: getattr(self, name)[some] for name in names}
+            alone = Emitters(**taken, linking=(linking,), linking_of=np.zeros(len(some), dtype=np.int64))
+            groups.append((linking, some, alone))
+        return tuple(groups)
+
     def recoloured(self, surfaces: Surfaces) -> Emitters:
         """The same emitters, with the emission and the lamps that `surfaces` have."""
         return replace(self, radiance=surfaces.emission_over(self.triangle, self.within), lamps=surfaces.lamps)
@@ -129,6 +156,8 @@ def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, see
     if len(chosen) > FEW_EMITTERS:
         whole, piece_of = np.unique(chosen, return_inverse=True)
         enclosed = enclosed_sides(surfaces, whole, rays, seed)[piece_of]
+    linkings = [surfaces.linking[mesh] for mesh in surfaces.mesh_of_triangle[chosen]]
+    known = {linking: number for number, linking in enumerate(dict.fromkeys(linkings))}
     return Emitters(
         chosen,
         within,
@@ -138,6 +167,8 @@ def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, see
         surfaces.emission_over(chosen, within),
         ~lit[surfaces.shell_of_triangle[chosen], 1] | surfaces.front_only[chosen],
         enclosed,
+        tuple(known),
+        np.array([known[linking] for linking in linkings], dtype=np.int64),
         surfaces.lamps,
     )
 
@@ -151,6 +182,7 @@ def direct_light(
     keys: Ints,
     shadow_rays: int,
     seed: int,
+    mesh: Ints | None = None,
 ) -> tuple[DirectLight, Floats]:
     """Direct light at points.
 
@@ -164,6 +196,8 @@ def direct_light(
         Numbers of the receivers, for their sampling patterns.
     shadow_rays : int
         Rays each receiver spreads over all emitters.
+    mesh : (n,) int or None
+        That each receiver lies on. None where no light is for some of the meshes alone.
 
     Returns
     -------
@@ -171,14 +205,50 @@ def direct_light(
     uncertainty : (n,) float, W m^-2 sr^-1
         Standard error of its luminance, were the rays independent: 0 where every emitter is seen whole or not at all.
     """
-    by_triangles, doubt = _direct_of_triangles(emitters, rays, points, normals, lift, keys, shadow_rays, seed)
+    if mesh is None:
+        mesh = np.zeros(len(points), dtype=np.int64)
+    by_triangles, doubt = _direct_of_linked(emitters, rays, points, normals, lift, keys, shadow_rays, seed, mesh)
     if not emitters.lamps:
         return by_triangles, doubt
     first, luminance = len(emitters.triangle), emitters.strengths @ LUMINANCE
     by_lamps, more = lamp_light(
-        emitters.lamps, luminance[first:], first, rays, points, normals, lift, keys, shadow_rays, seed
+        emitters.lamps, luminance[first:], first, rays, points, normals, lift, keys, shadow_rays, seed, mesh
     )
     return DirectLight.joined([by_triangles, by_lamps]), np.hypot(doubt, more)
+
+
+def _direct_of_linked(
+    emitters: Emitters,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    keys: Ints,
+    shadow_rays: int,
+    seed: int,
+    mesh: Ints,
+) -> tuple[DirectLight, Floats]:
+    """What emitting triangles send to the meshes that their light is for."""
+    if emitters.linking in ((), (UNLINKED,)):
+        return _direct_of_triangles(emitters, rays, points, normals, lift, keys, shadow_rays, seed)
+    count = len(points)
+    entries, variance = [DirectLight.none(count)], np.zeros(count)
+    for linking, chosen, group in emitters.linked:
+        hidden_by = rays.hidden_by(linking.blockers)
+        if linking.receivers is None:
+            light, doubt = _direct_of_triangles(group, hidden_by, points, normals, lift, keys, shadow_rays, seed)
+            rows = np.arange(count)
+        else:
+            rows = np.flatnonzero(np.isin(mesh, list(linking.receivers)))
+            axes = normals[rows]
+            up = axes if lift is normals else lift[rows]
+            light, doubt = _direct_of_triangles(group, hidden_by, points[rows], axes, up, keys[rows], shadow_rays, seed)
+            light = light.renumbered(rows, count)
+        if len(emitters.linked) > 1:
+            light = replace(light, emitter=chosen[light.emitter].astype(np.int32))
+        entries.append(light)
+        variance[rows] += doubt**2
+    return DirectLight.joined(entries), np.sqrt(variance)
 
 
 def _direct_of_triangles(

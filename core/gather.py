@@ -330,6 +330,7 @@ def _direct(
                 np.zeros(len(part), dtype=np.int64),
                 rays,
                 transport.seed + salt,
+                receivers.mesh[part],
             )
 
         parts = transport.rays.workers.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))

@@ -88,6 +88,7 @@ def lamp_light(
     keys: Ints,
     shadow_rays: int,
     seed: int,
+    mesh: Ints,
 ) -> tuple[DirectLight, Floats]:
     """Direct light of lamps at points.
 
@@ -104,6 +105,8 @@ def lamp_light(
     shadow_rays : int
         Rays each receiver spreads over all lamps. Of `FEW_LAMPS`, each that it would see gets one at least; of more,
         each from which `STRONG` rays are due, and the others share the rest.
+    mesh : (n,) int
+        That each receiver lies on.
 
     Returns
     -------
@@ -126,12 +129,16 @@ def lamp_light(
                 keys[k : k + size],
                 shadow_rays,
                 seed,
+                mesh[k : k + size],
             )
             for k in range(0, count, size)
         ]
         return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     shifts = hashed(keys, 2, seed)
     whole = unoccluded_of_all(lamps, points, normals)
+    for arriving, lamp in zip(whole, lamps, strict=True):
+        if lamp.linking.receivers is not None:
+            arriving[~np.isin(mesh, list(lamp.linking.receivers))] = 0.0
     bright = whole * luminance[:, None]
     total = np.maximum(bright.sum(axis=0), DARK)
     entries, variance = [DirectLight.none(count)], np.zeros(count)
@@ -153,7 +160,8 @@ def lamp_light(
             for part in (same[k : k + size] for k in range(0, len(same), size)):
                 at = some[part]
                 ways = _ways(lamp, points[at], int(rays_each), shifts[at])
-                visible[part] = _visible_share(lamp, rays, points[at], normals[at], lift[at], ways)
+                hidden_by = rays.hidden_by(lamp.linking.blockers)
+                visible[part] = _visible_share(lamp, hidden_by, points[at], normals[at], lift[at], ways)
         doubt = visible * (1.0 - visible) * rays_of**-1.5
         variance[some] += LATTICE_ERROR**2 * doubt * bright[number, some] ** 2
         emitter = np.full(len(some), first_number + number)
@@ -226,7 +234,7 @@ def _light_of_drawn(
     visible = np.ones(len(at))
     even = _even_points(lamps)
     simple = np.zeros(len(lamps), dtype=bool)
-    simple[even.lamp] = [lamps[k].shadow for k in even.lamp]
+    simple[even.lamp] = [lamps[k].shadow and lamps[k].linking.blockers is None for k in even.lamp]
     place = np.full(len(lamps), -1)
     place[even.lamp] = np.arange(len(even.lamp))
     ask = np.flatnonzero(simple[drawn.lamp])
@@ -241,7 +249,8 @@ def _light_of_drawn(
         some = np.flatnonzero(drawn.lamp == which) if lamp.shadow else np.zeros(0, dtype=np.int64)
         there = at[some]
         ways = _raised(_ways(lamp, points[there], 1, square[some])[:, 0], normals[there])[:, None]
-        visible[some] = _visible_share(lamp, rays, points[there], normals[there], lift[there], ways)
+        hidden_by = rays.hidden_by(lamp.linking.blockers)
+        visible[some] = _visible_share(lamp, hidden_by, points[there], normals[there], lift[there], ways)
     seen = np.bincount(at, weights=visible, minlength=count)
     asked = np.maximum(np.bincount(at, minlength=count), 1)
     share = seen / asked
@@ -353,7 +362,7 @@ def unoccluded(lamp: Lamp, points: Floats, normals: Floats) -> Floats:
             radius_square = (shapes.half_axes[:, 0] ** 2).sum(axis=1)
             above = np.flatnonzero(height >= reach)
             facing = shapes.weight[above] / (square + radius_square)[above]
-            light[above] = facing * height[above] / np.sqrt(square[above]) / np.pi
+            light[above] = facing * height[above] / np.sqrt(np.maximum(square[above], TINY)) / np.pi
             summed = summed[height[summed] < reach[summed]]
     summed = summed[_in_beam(lamp, points[summed])]
     places = 1 if _is_sharp(lamp) else PLACES

@@ -214,7 +214,8 @@ def result_of(
     meshes = with_groups(meshes, [(group.name, meshes_of(group)[0]) for group in groups])
     error = shown.error(surfaces)
     from_lamps, from_suns = (patches.direct.irradiance(patches.emitters.lamps_alone(suns)) for suns in (False, True))
-    balance = energy(patches.balance, solution, from_lamps, from_suns, surfaces)
+    from_linked = patches.direct.irradiance(patches.emitters.linked_alone())
+    balance = energy(patches.balance, solution, from_lamps, from_suns, from_linked, surfaces)
     clock.stop()
     report: dict[str, Any] = {
         **story.counts,

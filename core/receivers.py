@@ -42,6 +42,8 @@ class Receivers:
         How far the position is off the vertex.
     sizes : (n,) float, scene units
         Mean longest edge of the faces around.
+    mesh : (n,) int
+        That each lies on.
     of_corner : (f, 3) int
         The receiver of each face corner, for the face sides given.
     """
@@ -52,6 +54,7 @@ class Receivers:
     codes: Ints
     inward: Floats
     sizes: Floats
+    mesh: Ints
     of_corner: Ints
 
     def taken(self, which: Ints) -> Receivers:
@@ -117,6 +120,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         codes,
         INWARD * inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
+        surfaces.mesh_of_triangle[faces.triangle[face_of_side]][first // 3],
         group.reshape(-1, 3),
     )
 

@@ -34,7 +34,7 @@ from .lit import Lit
 from .parts import NotDividedError, Part, divided
 from .progress import ProgressCallback, no_progress
 from .result import BakeResult
-from .scene import Floats, Lamp, Scene, SurfaceMesh
+from .scene import Floats, Lamp, LightLinking, Scene, SurfaceMesh
 from .surfaces import Surfaces
 from .workers import Workers
 
@@ -129,6 +129,7 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
     marks = [
         np.zeros(0, dtype=bool) if mark is None or not mark.any() else mark for mark in (mesh.clear, mesh.front_only)
     ]
+    digest.update(_linking_code(mesh.linking))
     for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, *marks):
         digest.update(repr((array.shape, array.dtype.str)).encode())
         digest.update(np.ascontiguousarray(array).data)
@@ -138,12 +139,18 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
 def shape_of_lamp(lamp: Lamp) -> bytes:
     """A number that changes with anything about a lamp but its strength and its name."""
     digest = blake2b(type(lamp).__name__.encode(), digest_size=16)
+    digest.update(_linking_code(lamp.linking))
     cone = getattr(lamp, "cone", None)
     for part in (lamp, *(() if cone is None else (cone,))):
         for field in fields(part):
-            if field.name not in {"name", "strength", "cone"}:
+            if field.name not in {"name", "strength", "cone", "linking"}:
                 digest.update(np.asarray(getattr(part, field.name), dtype=np.float64).tobytes())
     return digest.digest()
+
+
+def _linking_code(linking: LightLinking) -> bytes:
+    sets = (linking.receivers, linking.blockers)
+    return repr([None if chosen is None else sorted(chosen) for chosen in sets]).encode()
 
 
 def shapes_of(scene: Scene) -> tuple[bytes, ...]:

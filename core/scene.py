@@ -36,6 +36,26 @@ class Texture:
     colours: NDArray[np.float32]
 
 
+@dataclass(frozen=True)
+class LightLinking:
+    """Which meshes the light of a lamp or of an emitting mesh is for. What they reflect is for all.
+
+    Attributes
+    ----------
+    receivers : frozenset of int or None
+        Indices into `Scene.meshes`: what it lights; None for all.
+    blockers : frozenset of int or None
+        What hides it; None for all.
+    """
+
+    receivers: frozenset[int] | None = None
+    blockers: frozenset[int] | None = None
+
+
+UNLINKED = LightLinking()
+"""Light for all meshes, which all of them hide."""
+
+
 @dataclass(frozen=True, eq=False)
 class SurfaceMesh:
     """One mesh as it renders: world coordinates, triangles wound so that the front is counterclockwise.
@@ -66,6 +86,8 @@ class SurfaceMesh:
         Triangles that light goes through as if they were not there.
     front_only : (t,) bool or None
         Triangles whose back does not emit.
+    linking : LightLinking
+        Of the light that it emits.
     """
 
     name: str
@@ -81,6 +103,7 @@ class SurfaceMesh:
     emission_texture: Texture | None = None
     clear: NDArray[np.bool_] | None = None
     front_only: NDArray[np.bool_] | None = None
+    linking: LightLinking = UNLINKED
 
     def emits(self) -> bool:
         """Whether it gives light anywhere."""
@@ -132,6 +155,7 @@ class PointLamp:
     cone : Cone or None
     shadow : bool
         Whether surfaces hide it.
+    linking : LightLinking
     """
 
     name: str
@@ -141,6 +165,7 @@ class PointLamp:
     soft: bool = False
     cone: Cone | None = None
     shadow: bool = True
+    linking: LightLinking = UNLINKED
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +186,7 @@ class AreaLamp:
     spread : float, radians
         Angle of the cone that its light stays in; pi for a lamp that looks equally bright from all sides.
     shadow : bool
+    linking : LightLinking
     """
 
     name: str
@@ -171,6 +197,7 @@ class AreaLamp:
     elliptic: bool = False
     spread: float = np.pi
     shadow: bool = True
+    linking: LightLinking = UNLINKED
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,6 +216,7 @@ class SunLamp:
     shadow : bool
     of_world : bool
         Whether it stands for a bright part of the world.
+    linking : LightLinking
     """
 
     name: str
@@ -197,6 +225,7 @@ class SunLamp:
     strength: Floats
     shadow: bool = True
     of_world: bool = False
+    linking: LightLinking = UNLINKED
 
 
 Lamp = PointLamp | AreaLamp | SunLamp

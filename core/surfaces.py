@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
 from .geometry import lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
-from .scene import Floats, Ints, Lamp, Scene, SurfaceMesh, Texture
+from .scene import Floats, Ints, Lamp, LightLinking, Scene, SurfaceMesh, Texture
 from .textures import joined, mean_colours, with_means
 
 SMALLEST_AREA = 1e-14
@@ -54,6 +54,8 @@ class Surfaces:
         Whether reflected light meets it, and whether it hides lamps and emitters.
     front_only : (t,) bool
         Whether only the front emits.
+    linking : tuple of LightLinking
+        Of the emission of each mesh.
     extent : float
         Largest edge of the bounding box.
     world : (3,) or (cells, 3) float
@@ -84,6 +86,7 @@ class Surfaces:
     seen: NDArray[np.bool_]
     shadow: NDArray[np.bool_]
     front_only: NDArray[np.bool_]
+    linking: tuple[LightLinking, ...]
     extent: float
     world: Floats
     lamps: tuple[Lamp, ...]
@@ -113,6 +116,13 @@ class Surfaces:
         reach = 2.0 * float(np.abs(self.points[chosen] - middle).max(initial=0.0))
         moved: Floats = self.points - HAIR * reach * normalized(outward)[self.place_of_point]
         return moved
+
+    def blockers(self) -> dict[frozenset[int], NDArray[np.bool_]]:
+        """The triangles that hide light of some blockers only, (t,), by these."""
+        sets = {linking.blockers for linking in (*self.linking, *(lamp.linking for lamp in self.lamps))} - {None}
+        return {
+            chosen: self.shadow & np.isin(self.mesh_of_triangle, list(chosen)) for chosen in sets if chosen is not None
+        }
 
     def reflectance_over(self, triangle: Ints, corners: Floats) -> Floats:
         """Mean reflectance over parts of triangles, (n, 3), whose corners have barycentric coordinates (n, 3, 3)."""
@@ -182,6 +192,7 @@ def join(scene: Scene) -> Surfaces:
         seen=flags[:, 1] & opaque,
         shadow=flags[:, 2] & opaque,
         front_only=_marked([mesh.front_only for mesh in scene.meshes], kept),
+        linking=tuple(mesh.linking for mesh in scene.meshes),
         extent=extent,
         warnings=tuple(warnings),
         **_colours(scene, kept),

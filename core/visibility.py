@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import copy
 import threading
 import time
 from dataclasses import dataclass
@@ -108,6 +109,8 @@ class RayScene:
         0 takes every core.
     seen, shadow : (t,) bool or None
         Triangles that `first_hits` meets, and those that hide things in `visible`; None for all.
+    blockers : dict of (t,) bool, or None
+        Other triangles that hide what is asked of `hidden_by`, by the numbers of their meshes.
 
     Attributes
     ----------
@@ -127,6 +130,7 @@ class RayScene:
         threads: int = 0,
         seen: NDArray[np.bool_] | None = None,
         shadow: NDArray[np.bool_] | None = None,
+        blockers: dict[frozenset[int], NDArray[np.bool_]] | None = None,
     ) -> None:
         self.workers = Workers(threads)
         used = points[triangles.ravel()]
@@ -141,6 +145,18 @@ class RayScene:
         self._of_seen = self._of_shadow = _Triangles(self.local(points), triangles, chosen[0])
         if (chosen[0] != chosen[1]).any():
             self._of_shadow = _Triangles(self.local(points), triangles, chosen[1])
+        self._whole: RayScene | None = None
+        self._of_blockers = {
+            which: _Triangles(self.local(points), triangles, mask) for which, mask in (blockers or {}).items()
+        }
+
+    def hidden_by(self, blockers: frozenset[int] | None) -> RayScene:
+        """The same scene, in which these meshes alone hide things in `visible`; None for all that throw shadows."""
+        if blockers is None:
+            return self
+        other = copy.copy(self)
+        other._of_shadow, other._whole = self._of_blockers[blockers], self
+        return other
 
     def close(self) -> None:
         """End the threads."""
@@ -156,9 +172,10 @@ class RayScene:
         start = time.perf_counter()
         answer = triangles.run(origins, directions, **options)
         elapsed = time.perf_counter() - start
+        whole = self._whole or self
         with self._counting:
-            self.seconds += elapsed
-            self.rays += len(origins)
+            whole.seconds += elapsed
+            whole.rays += len(origins)
         return answer
 
     def first_hits(self, origins: NDArray[np.float32], directions: NDArray[np.float32]) -> Hits:

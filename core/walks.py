@@ -242,7 +242,7 @@ def meets_light(surfaces: Surfaces, rays: RayScene, steps: Steps, shines: NDArra
             middle = at - lamp.direction * (BEYOND / rays.scale)
         else:
             middle = np.broadcast_to(lamp.centre, at.shape)
-        light[on[facing]] |= _is_clear(rays, at, middle) | (not lamp.shadow)
+        light[on[facing]] |= _is_clear(rays.hidden_by(lamp.linking.blockers), at, middle) | (not lamp.shadow)
     return light
 
 

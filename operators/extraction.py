@@ -3,7 +3,7 @@
 """The scene as `core` takes it: everything that renders, as plain arrays in world space, copied out of Blender."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -15,6 +15,7 @@ from .appearance import Appearance, Colouring
 from .display import is_display
 from .lamps import lamp_of
 from .layers import Layers, joined_layers, layers_of
+from .linking import light_linking, linked_objects
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
 from .object_settings import Role, role_of
 from .participants import Participants, shown_as_rendered
@@ -230,6 +231,8 @@ class _Entry:
     layers : Layers or None
     light_group : str
         Empty for none.
+    makers : tuple of Object
+        What makes an instance, and what it is of; or the object alone.
     """
 
     order: tuple[Any, ...]
@@ -241,6 +244,7 @@ class _Entry:
     matrix: Floats
     layers: Layers | None
     light_group: str
+    makers: tuple[bpy.types.Object, ...]
 
 
 class _Reader:
@@ -268,6 +272,7 @@ class _Reader:
         self.lamps: list[Lamp] = []
         self._groups_of_meshes: list[str] = []
         self._groups_of_lamps: list[str] = []
+        self._makers_of_lamps: list[tuple[bpy.types.Object, ...]] = []
         self.targets: list[Target] = []
         self._parts: dict[bpy.types.Object, list[Part]] = {}
         self._matrices: dict[bpy.types.Object, Floats] = {}
@@ -285,6 +290,7 @@ class _Reader:
         colours = self._colouring.appearances([(e.original, e.local, e.materials, e.matrix) for e in entries])
         for entry, appearance in zip(entries, colours, strict=True):
             self._add(entry, appearance)
+        self._link_lights([entry.makers for entry in entries])
         self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
 
     def light_groups(self, world: bpy.types.World | None, suns: int) -> tuple[LightGroup, ...]:
@@ -349,7 +355,7 @@ class _Reader:
         ]
 
     def _entries(self) -> Iterator[_Entry]:
-        lamps: list[tuple[Any, Lamp | None, str]] = []
+        lamps: list[tuple[Any, Lamp | None, str, tuple[bpy.types.Object, ...]]] = []
         for instance in self._depsgraph.object_instances:
             if not self._participants.include(instance):
                 continue
@@ -372,8 +378,9 @@ class _Reader:
             owner = self._owner(instance, matrix, role)
             # As Cycles has it: what makes an instance may name the group for it.
             light_group = original.lightgroup or (parent.lightgroup if parent else "")
+            makers = (original,) if parent is None else (parent, original)
             if obj.type == "LIGHT":
-                lamps.append((order, self._lamp(obj, matrix) if role.seen else None, light_group))
+                lamps.append((order, self._lamp(obj, matrix) if role.seen else None, light_group, makers))
                 if owner is not None:
                     self._instanced_lamps[owner.name] = None
             if obj.type != "MESH":
@@ -383,10 +390,33 @@ class _Reader:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
                 materials = self._materials(obj, local)
                 self._colouring.read(obj, local, materials)
-                yield _Entry(order, original, owner, role, local, materials, matrix, layers, light_group)
-        found = [(lamp, group) for _, lamp, group in sorted(lamps, key=lambda found: found[0]) if lamp is not None]
-        self.lamps = [lamp for lamp, _ in found]
-        self._groups_of_lamps = [group for _, group in found]
+                yield _Entry(order, original, owner, role, local, materials, matrix, layers, light_group, makers)
+        found = [lamp for lamp in sorted(lamps, key=lambda found: found[0]) if lamp[1] is not None]
+        self.lamps = [lamp for _, lamp, _, _ in found if lamp is not None]
+        self._groups_of_lamps = [group for _, _, group, _ in found]
+        self._makers_of_lamps = [makers for _, _, _, makers in found]
+
+    def _link_lights(self, makers_of_meshes: list[tuple[bpy.types.Object, ...]]) -> None:
+        """Tell all that gives light which meshes it is for."""
+        everything = {maker for makers in (*makers_of_meshes, *self._makers_of_lamps) for maker in makers}
+        linked = {obj for obj in everything if linked_objects(obj)}
+        linked.update(*(linked_objects(obj) for obj in linked))
+        if not linked:
+            return
+
+        # As Cycles has it: what makes an instance is linked for it, if it is linked at all.
+        def linked_by(makers: tuple[bpy.types.Object, ...]) -> bpy.types.Object:
+            return makers[0] if makers[0] in linked else makers[-1]
+
+        owners = [linked_by(makers) for makers in makers_of_meshes]
+        self.lamps = [
+            replace(lamp, linking=light_linking(linked_by(makers), owners))
+            for lamp, makers in zip(self.lamps, self._makers_of_lamps, strict=True)
+        ]
+        self.meshes = [
+            replace(mesh, linking=light_linking(owner, owners)) if mesh.emits() else mesh
+            for mesh, owner in zip(self.meshes, owners, strict=True)
+        ]
 
     def _shows_what_is_baked(self, original: bpy.types.Object, parent: bpy.types.Object) -> bool:
         """Return whether an instance that `parent` makes of `original` will show the colours that `original` gets.

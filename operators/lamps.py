@@ -34,9 +34,6 @@ def lamp_of(obj: bpy.types.Object, matrix: Floats) -> tuple[Lamp | None, tuple[s
         return None, ()
     factor, notes = constant_emission(light) if uses_nodes(light) else (np.ones(3), ())
     notes = (*notes, *_limits(light))
-    linking = obj.light_linking
-    if linking.receiver_collection is not None or linking.blocker_collection is not None:
-        notes = (*notes, "light linking is not supported yet; it lights all objects, and all throw shadows")
     power = factor * _power(light)
     axes, centre = matrix[:3, :3], matrix[:3, 3].copy()
     if light.type == "SUN":

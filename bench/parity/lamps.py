@@ -177,3 +177,49 @@ def emitter_ball() -> list[Any]:
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=0.15, location=(0.3, -0.2, 1.3))
     bpy.context.object.data.materials.append(stage.glow(colour=(1.0, 0.8, 0.5), strength=20.0))
     return [floor]
+
+
+def _linked(name: str, **states: str) -> Any:
+    """Return a collection for light linking, of objects by their names."""
+    collection = bpy.data.collections.new(name)
+    for number, (thing, state) in enumerate(states.items()):
+        collection.objects.link(bpy.data.objects[thing])
+        collection.collection_objects[number].light_linking.link_state = state
+    return collection
+
+
+@case("Light linking: a lamp that does not light the wall")
+def light_linking_receivers() -> list[Any]:
+    """The wall throws no red light on the floor."""
+    floor = stage.room()
+    lamp = stage.lamp("POINT", shadow_soft_size=0.2)
+    lamp.light_linking.receiver_collection = _linked("Receivers", Wall="EXCLUDE")
+    return [floor]
+
+
+@case("Light linking: a lamp that lights the wall alone")
+def light_linking_indirect() -> list[Any]:
+    """The floor has what the wall reflects."""
+    floor = stage.room()
+    lamp = stage.lamp("POINT", shadow_soft_size=0.2)
+    lamp.light_linking.receiver_collection = _linked("Receivers", Wall="INCLUDE")
+    return [floor]
+
+
+@case("Shadow linking: a board that throws no shadow")
+def light_linking_blockers() -> list[Any]:
+    """It is lit, and hides what others reflect."""
+    floor = stage.room()
+    lamp = stage.lamp("AREA", shape="SQUARE", size=0.3)
+    lamp.light_linking.blocker_collection = _linked("Blockers", Board="EXCLUDE")
+    return [floor]
+
+
+@case("Light linking of a mesh emitter")
+def light_linking_emitter() -> list[Any]:
+    """It lights the floor alone, and only the wall may hide it."""
+    floor = stage.room()
+    panel = stage.grid("Panel", 0.6, 0.6, 1, stage.glow(), location=(0.3, -0.2, 1.5), rotation=(3.1416, 0, 0))
+    panel.light_linking.receiver_collection = _linked("Receivers", Floor="INCLUDE")
+    panel.light_linking.blocker_collection = _linked("Blockers", Wall="INCLUDE")
+    return [floor]

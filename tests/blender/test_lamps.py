@@ -16,6 +16,7 @@ from tests.blender.making import (
     bake_selected,
     colours_of,
     diffuse_material,
+    emission_material,
     node_tree,
     report,
     select_also,
@@ -134,9 +135,47 @@ def test_what_newer_versions_have_lights_a_room_as_in_cycles(lamp):
     check_against_cycles(lamp)
 
 
+def linked(name, states):
+    """Return a collection for light linking that includes and excludes objects by their names."""
+    collection = bpy.data.collections.new(name)
+    for number, (thing, state) in enumerate(states.items()):
+        collection.objects.link(bpy.data.objects[thing])
+        collection.collection_objects[number].light_linking.link_state = state
+    return collection
+
+
+@pytest.mark.parametrize(
+    ("shines", "receivers", "blockers"),
+    [
+        ("lamp", {"Wall": "INCLUDE", "Board": "INCLUDE"}, {}),
+        ("lamp", {"Wall": "EXCLUDE"}, {"Board": "EXCLUDE"}),
+        ("mesh", {"Wall": "EXCLUDE"}, {}),
+        ("mesh", {"Floor": "INCLUDE", "Board": "EXCLUDE"}, {"Wall": "INCLUDE"}),
+    ],
+    ids=str,
+)
+def test_linked_light_lights_a_room_as_in_cycles(shines, receivers, blockers):
+    floor = add_room()
+    if shines == "lamp":
+        source = add_lamp("POINT", shadow_soft_size=0.2, energy=10.0)
+    else:
+        glow = emission_material(strength=4.0)
+        corners = [(-0.1, -0.5, 1.5), (-0.1, 0.1, 1.5), (0.6, 0.1, 1.5), (0.6, -0.5, 1.5)]
+        source = add_mesh("Panel", corners, [(0, 1, 2, 3)], materials=[glow])
+    if receivers:
+        source.light_linking.receiver_collection = linked("Receivers", receivers)
+    if blockers:
+        source.light_linking.blocker_collection = linked("Blockers", blockers)
+    compare_with_cycles(floor)
+
+
 def check_against_cycles(lamp):
     floor = add_room()
     add_lamp(**lamp, energy=10.0)
+    compare_with_cycles(floor)
+
+
+def compare_with_cycles(floor):
     select_also(floor)
     theirs, ours = by_cycles(floor), by_us(floor)
     # At the border our light is gathered a little inside the face, and the other way round where the board's shadow
@@ -201,12 +240,6 @@ def test_a_node_that_is_not_read_is_named_with_the_lamp():
     tree.links.new(shine.outputs[0], tree.nodes[0].inputs["Surface"])
     _, (warning,) = lamps_read()
     assert '"Key"' in warning and "Light Falloff" in warning
-
-
-def test_light_linking_is_named_as_not_supported():
-    add_lamp("POINT", "Key").light_linking.receiver_collection = add_collection("Some")
-    _, (warning,) = lamps_read()
-    assert '"Key"' in warning and "light linking" in warning
 
 
 def test_an_area_lamp_without_an_area_is_named():
