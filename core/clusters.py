@@ -239,7 +239,9 @@ class _Pieces:
             one += x * x
             other += y * y
             both += (x + y) ** 2
-        flat = np.sqrt(both) / (self._sums[3][a] + self._sums[3][b])
+        # Two triangles so small that their area vanishes have no common plane, and are left as they are.
+        area = self._sums[3][a] + self._sums[3][b]
+        flat = np.divide(np.sqrt(both), area, out=np.zeros_like(area), where=area > 0.0)
         allowed = (square < size * size) & (spread <= LARGEST_SPREAD) & (flat >= flatness)
         allowed &= facing >= LEAST_COSINE * np.sqrt(one * other)
         return square * (1.0 + BENT * (1.0 - flat.astype(np.float64))), allowed

@@ -387,3 +387,13 @@ def test_a_finer_ball_is_lit_alike_for_about_as_many_patches():
     assert fine.report["patches"] < 1.5 * coarse.report["patches"]
     # 20,480 triangles against 5,120: the shapes differ by a thousandth.
     np.testing.assert_allclose(mean_over(fine.meshes[-1:]), mean_over(coarse.meshes[-1:]), rtol=0.02)
+
+
+def test_two_triangles_whose_area_vanishes_are_not_joined():
+    # They lie on one edge of the sheet, and have no plane in common with anything.
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.5, 0, 0], [0.25, 0, 0]])
+    surfaces = join(Scene((surface_mesh("sheet", points[:3], np.array([[0, 1, 2]])),), DARK))
+    collapsed = np.array([[1, 0, 3], [0, 3, 4]])
+    with np.errstate(all="raise"):
+        found = method.cluster_triangles(surfaces, np.zeros(2, dtype=int), points[collapsed], collapsed, smallest=1.0)
+    assert len(found) == 0
