@@ -16,11 +16,12 @@ from . import refinement
 from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
-from .cutting import CutEdges, cut_receivers, edges_to_outlines, find_cuts
+from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
 from .detail import FaceSizes, counted_share_of_triangles, light_up, light_up_in_detail
 from .direct import all_emitters
+from .divisions import Divisions, blocked_edges
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
-from .interpolation import PlacesOnFaces
+from .interpolation import PlacesOnFaces, receivers_of_nodes
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
 from .lit import Lit
 from .patches import clustered_patches
@@ -220,14 +221,19 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         )
         if shown.gathered.places.rays:
             of_cells = aside[cover.base_of(cells.element)]
-            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells)
+            of_node = receivers_of_nodes(leaves, shown)
+            divisions = Divisions.of(blocked_edges(rays, shown.places, of_node, shown.gathered.hidden, finest))
+            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells, of_node, divisions)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
         hidden, touching = shown.gathered.hidden, shown.gathered.touching
+        fronts = shown.places.of_corner[: len(shown.faces.triangle)]
+        ways = blocked_edges(rays, shown.places, fronts, hidden, finest)
         edges = CutEdges.joined(
             [
                 find_cuts(shown.faces, shown.places, hidden, is_hidden),
                 edges_to_outlines(shown.faces, shown.places, hidden, touching),
+                edges_under_walls(shown.faces, shown.places, hidden, ways),
             ]
         )
         cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))

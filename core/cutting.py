@@ -56,10 +56,12 @@ TINY = np.finfo(np.float64).tiny
 class CutEdges:
     """Edges with a hidden and a seen end, each with the place where the one turns into the other.
 
+    Or with two seen ends and something thin in between.
+
     Attributes
     ----------
     start, end : (k,) int
-        Points, start seen and end hidden.
+        Points, start seen and end hidden, or seen as well.
     seen, hidden : (k,) int
         Receivers of the two ends.
     change : (k,) float
@@ -70,6 +72,8 @@ class CutEdges:
         Whether the surface ends at the edge: light is gathered beside it, off the plane of the next wall.
     whole : (k,) bool
         Edges that end on the outline and are not cut: both numbers are 1.
+    beyond : (k,) float
+        How far the end's side reaches towards the start where the end is seen, too; 0 where it is not.
     """
 
     start: Ints
@@ -80,6 +84,7 @@ class CutEdges:
     share: Floats
     border: NDArray[np.bool_]
     whole: NDArray[np.bool_]
+    beyond: Floats
 
     def taken(self, which: NDArray[np.bool_] | Ints) -> CutEdges:
         """Some of the edges."""
@@ -125,7 +130,7 @@ def find_cuts(
         share = (low[:, None] + width * inner).ravel()
         each = np.repeat(np.arange(count), SECTIONS - 1)
         no = np.zeros(len(each), dtype=bool)
-        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share, border[each], no)
+        tried = CutEdges(start[each], end[each], seen[each], unseen[each], share, share, border[each], no, 0.0 * share)
         inside = is_hidden(_along(faces, places, tried, share)).reshape(count, SECTIONS - 1)
         # The first section whose end is hidden; the last one's end is known to be.
         first = np.where(inside.any(axis=1), inside.argmax(axis=1), SECTIONS - 1)
@@ -133,7 +138,7 @@ def find_cuts(
     high = low + width
     change = (low + high) / 2.0
     share = np.clip(change, LEAST_PIECE, 1.0 - LEAST_PIECE)
-    return CutEdges(start, end, seen, unseen, change, share, border, np.zeros(count, dtype=bool))
+    return CutEdges(start, end, seen, unseen, change, share, border, np.zeros(count, dtype=bool), np.zeros(count))
 
 
 def edges_to_outlines(
@@ -150,7 +155,38 @@ def edges_to_outlines(
     """
     (start, end, seen, at), border = _edges_from_to(faces, places, ~hidden & ~touching, touching)
     ones = np.ones(len(start))
-    return CutEdges(start, end, seen, at, ones, ones, border, ones.astype(bool))
+    return CutEdges(start, end, seen, at, ones, ones, border, ones.astype(bool), 0.0 * ones)
+
+
+def edges_under_walls(faces: Faces, places: Receivers, hidden: NDArray[np.bool_], ways: Floats) -> CutEdges:
+    """Edges of the faces' fronts with two seen ends that a thin wall crosses, of faces that it divides.
+
+    Parameters
+    ----------
+    places : Receivers
+        `of_corner` begins with the fronts of all faces, in order.
+    hidden : (n,) bool
+        Of the receivers.
+    ways : (f, 3, 2) float
+        As `blocked_edges` has them.
+    """
+    count = len(faces.triangle)
+    of_corner = places.of_corner[:count]
+    seen = ~hidden[of_corner].any(axis=1, keepdims=True)
+    crossed = (ways < 1.0).all(axis=2) & seen
+    crossed &= crossed.sum(axis=1, keepdims=True) == 2
+    found = np.flatnonzero(crossed)
+    following = np.roll(of_corner, -1, axis=1)
+    start, end = of_corner.ravel()[found], following.ravel()[found]
+    keys = (np.minimum(of_corner, following) << 32 | np.maximum(of_corner, following)).ravel()
+    _, first = np.unique(keys[found], return_index=True)
+    _, number, faces_beside = np.unique(keys, return_inverse=True, return_counts=True)
+    found, start, end = found[first], start[first], end[first]
+    point, next_point = faces.corners.ravel(), np.roll(faces.corners, -1, axis=1).ravel()
+    change, beyond = ways.reshape(-1, 2)[found].T
+    share = np.clip((change + 1.0 - beyond) / 2.0, LEAST_PIECE, 1.0 - LEAST_PIECE)
+    border, no = faces_beside[number[found]] == 1, np.zeros(len(found), dtype=bool)
+    return CutEdges(point[found], next_point[found], start, end, change, share, border, no, beyond)
 
 
 def _edges_from_to(
@@ -257,9 +293,10 @@ def _within(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights:
 
 
 def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Receivers, Receivers]:
-    """Receivers before each cut, for `drawn_to_cut`, and just beyond it."""
+    """Receivers before each cut, for `drawn_to_cut`, and just beyond it, or before it as seen from the other end."""
     before = _along(faces, places, cuts, BEFORE_CUT * cuts.change)
-    return before, _along(faces, places, cuts, np.minimum(cuts.change + BEYOND_CUT, 1.0))
+    beyond = np.where(cuts.beyond > 0.0, 1.0 - BEFORE_CUT * cuts.beyond, np.minimum(cuts.change + BEYOND_CUT, 1.0))
+    return before, _along(faces, places, cuts, beyond)
 
 
 def drawn_to_cut(at_corner: Floats, before_cut: Floats, change: Floats, touching: NDArray[np.bool_]) -> Floats:
@@ -417,6 +454,25 @@ def _own_cuts(of_corner: Ints, cuts: CutEdges, present: NDArray[np.bool_]) -> In
     return np.where(present & (cut_key[order[place]] == key), order[place], -1)
 
 
+def _divided(of_corner: Ints, cuts: CutEdges, own: Ints, unseen: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Mark in `unseen` (f, 3) the corner of each face that a thin wall leaves alone, as if it were hidden.
+
+    Returns
+    -------
+    own : (f, 3) int
+        The same without cuts by walls that end or meet within the face.
+    start : (f, 3) int
+        Corner of the face that each cut begins at.
+    """
+    by_wall = (own >= 0) & (cuts.beyond[own] > 0.0)
+    divided = (by_wall.sum(axis=1) == 2) & ~unseen.any(axis=1)
+    face = np.flatnonzero(divided)
+    unseen[face, (np.argmin(by_wall[face], axis=1) + 2) % 3] = True
+    corner = np.arange(3)
+    start = np.where(of_corner == cuts.seen[own], corner, (corner + 1) % 3)
+    return np.where(by_wall & ~divided[:, None], -1, own), start
+
+
 def cut_faces(
     faces: Faces,
     face: Ints,
@@ -436,7 +492,7 @@ def cut_faces(
     values : (f, 3, 3) float
         At their corners: of the fronts as gathered, hidden or not.
     seen_value, hidden_value : (k, 3) float
-        On the two sides of each cut.
+        On the two sides of each cut, that of its start and that of its end.
 
     Returns
     -------
@@ -459,6 +515,7 @@ def cut_faces(
         return np.concatenate([at_corners, at_corners * (1.0 - t) + np.roll(at_corners, -1, axis=1) * t], axis=1)
 
     unseen = hidden[of_corner]
+    own, start = _divided(of_corner, cuts, on_face.own, unseen)
     # A piece lies on the side of the corners it has. One between three cuts has none: two of these are on the edges of
     # the corner that is alone on its side, and it lies beyond them, on the side of the other two.
     own_corner = piece < 3
@@ -466,19 +523,17 @@ def cut_faces(
     without = ~own_corner.any(axis=1)
     piece_hidden[without] = unseen[member[without]].sum(axis=1) >= 2
     front = interpolated(values[:count], on_face.share)
-    own = on_face.own >= 0
-    sides = []
-    for value in (seen_value, hidden_value):
-        side = front.copy()
-        side[:, 3:][own] = value[on_face.own[own]]
-        sides.append(side[row, piece])
+    new_front = front[row, piece]
+    at, vertex = np.nonzero(~own_corner & (own[row, piece - 3] >= 0))
+    edge = piece[at, vertex] - 3
+    cut, of_start = own[member[at], edge], unseen[member[at], start[member[at], edge]] == piece_hidden[at]
+    new_front[at, vertex] = np.where(of_start[:, None], seen_value[cut], hidden_value[cut])
     behind = face[count:]
     back = interpolated(values[count:], on_face.share[behind])
     number = np.full(count, -1, dtype=np.int64)
     number[behind] = np.arange(len(behind))
     with_back = np.flatnonzero(number[member] >= 0)
     new_back = back[number[member[with_back]][:, None], piece[with_back]]
-    new_front = np.where(piece_hidden[:, None, None], sides[1], sides[0])
     weights = interpolated(faces.weights, on_face.share)
     new = Faces(
         faces.points,

@@ -107,6 +107,11 @@ def light_up_in_detail(
     """
     shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, light_up_first, gather_at)
 
+    def bright_enough(lit: Lit) -> NDArray[np.bool_]:
+        # Where a sealed room ends that is dark anyhow, nothing breaks off.
+        _, area, light = shown.missed_light()
+        return _brightest_corner(lit) > tolerance * lit_area(area, light)[1]
+
     def split_by_feet(first_new: int) -> Ints:
         nodes = [np.zeros(0, dtype=np.int64)]
         for lit, chosen in shown.parts():
@@ -114,7 +119,7 @@ def light_up_in_detail(
             node = lit.faces.node
             new, patch = node >= first_new, node < len(partly)
             new[patch] &= partly[shown.tree.patch[node[patch]]]
-            seen = ~lit.gathered.hidden[lit.places.of_corner[:count]].any(axis=1)
+            seen = ~lit.gathered.hidden[lit.places.of_corner[:count]].any(axis=1) & bright_enough(lit)
             faces = np.flatnonzero(chosen & new & seen & (shown.tree.sizes(node) >= 2.0 * sizes.smallest_cut))
             nodes.append(node[faces_with_feet(lit.faces, lit.places, faces, is_hidden)])
         return np.unique(np.concatenate(nodes))
@@ -136,7 +141,7 @@ def light_up_in_detail(
     def split_by_outline(first_new: int) -> Ints:
         nodes = [np.zeros(0, dtype=np.int64)]
         for lit, chosen in shown.parts():
-            faces = chosen & (lit.faces.node >= first_new)
+            faces = bright_enough(lit) & chosen & (lit.faces.node >= first_new)
             if faces.any():
                 nodes.append(_nodes_with_crooked_cuts(lit, faces, shown.tree, sizes, is_hidden))
         return np.sort(np.concatenate(nodes))
@@ -222,6 +227,14 @@ class _ShownFaces:
         """The faces and their light."""
         (first, kept), (changed, _) = self.parts()
         return first.with_others(kept, changed, self.tree) if self._changed_shells.any() else first
+
+
+def _brightest_corner(known: Lit) -> Floats:
+    """Luminance of the brightest seen corner of the front of each face, (faces,)."""
+    of_corner = known.places.of_corner[: len(known.faces.triangle)]
+    light = np.where(known.gathered.hidden, 0.0, known.gathered.irradiance @ LUMINANCE)
+    brightest: Floats = light[of_corner].max(axis=1, initial=0.0)
+    return brightest
 
 
 def _nodes_with_crooked_cuts(

@@ -9,16 +9,19 @@ finest mesh there is, without tracing.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .cells import Cells
 from .direct import LUMINANCE
+from .divisions import Divisions
 from .lit import Lit
 from .met_places import MetPlaces
 from .patches import PatchTree
 from .sampling import Singles
-from .scene import Floats
+from .scene import Floats, Ints
 from .world import MAP_CELLS
 
 STEEP = 1.0
@@ -44,9 +47,21 @@ class PlacesOnFaces:
     aside : (places,) bool
         Places that say nothing of the power that the vertices' light should have: on elements that are covered or
         inside a solid in part, whose radiosity is that of the rest.
+    of_node : (2 * nodes, 3) int
+        As `receivers_of_nodes` has them.
+    divisions : Divisions
+        Of the sides of nodes, (2 * nodes,).
     """
 
-    def __init__(self, cells: Cells, tree: PatchTree, met: MetPlaces, aside: NDArray[np.bool_]) -> None:
+    def __init__(
+        self,
+        cells: Cells,
+        tree: PatchTree,
+        met: MetPlaces,
+        aside: NDArray[np.bool_],
+        of_node: Ints,
+        divisions: Divisions,
+    ) -> None:
         self.tree, self.copied = tree, cells.copied
         count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
@@ -64,7 +79,14 @@ class PlacesOnFaces:
         self.areas = cells.areas[cell]
         self.open = ~aside[self.place]
         u, v = weights[cell, 0], weights[cell, 1]
-        self.shares = tuple(np.asarray(share, dtype=np.float32)[:, None] for share in (1.0 - u - v, u, v))
+        shares = np.stack([1.0 - u - v, u, v], axis=1)
+        divided, own = divisions.own_corners(self.side, shares)
+        shares[divided] = own
+        # On the two sides of a wall, a patch's own radiosity is that of neither.
+        self.whole[divided] = False
+        self.divided, self.beside_walls = divisions.number, bool(divisions.thin.any())
+        self.at_divided = of_node[divisions.number]
+        self.shares = tuple(np.asarray(share, dtype=np.float32)[:, None] for share in shares.T)
         self.triangle = tree.triangle[leaf[cell]].astype(np.int32)
 
 
@@ -90,6 +112,7 @@ class InterpolatedRadiance:
         """Radiance of places when the vertices have the light of `shown`, (places, 3), W m^-2 sr^-1."""
         there = self._on_faces
         corners = corner_irradiance_of_nodes(there.tree, shown)
+        corners[there.divided] = shown.gathered.irradiance[there.at_divided]
         irradiance = sum(share * corners[there.side, k] for k, share in enumerate(there.shares))
         light = corners @ LUMINANCE.astype(np.float32)
         with np.errstate(invalid="ignore"):
@@ -123,11 +146,26 @@ class InterpolatedRadiance:
 def corner_irradiance_of_nodes(tree: PatchTree, shown: Lit) -> NDArray[np.float32]:
     """Irradiance over pi at the corners of each side of each node, (2 * nodes, 3, 3); NaN where no face lies in it."""
     values = np.full((2 * len(tree), 3, 3), np.nan, dtype=np.float32)
-    faces, at_corners = shown.faces, shown.corner_irradiance()
-    node = faces.node[shown.face]
+    at_corners = shown.corner_irradiance()
+    for corner, row, of_face in _corners_of_nodes(tree, shown):
+        values[2 * shown.faces.node[shown.face[row]] + shown.side[row], corner] = at_corners[row, of_face]
+    return values
+
+
+def receivers_of_nodes(tree: PatchTree, shown: Lit) -> Ints:
+    """Receivers at the corners of each side of each node, (2 * nodes, 3); -1 where no face lies in it."""
+    receivers = np.full((2 * len(tree), 3), -1, dtype=np.int64)
+    for corner, row, of_face in _corners_of_nodes(tree, shown):
+        at = 2 * shown.faces.node[shown.face[row]] + shown.side[row]
+        receivers[at, corner] = shown.places.of_corner[row, of_face]
+    return receivers
+
+
+def _corners_of_nodes(tree: PatchTree, shown: Lit) -> Iterator[tuple[int, Ints, int]]:
+    """Corners of nodes, each with the face sides that have it, and as which of their own corners."""
+    node = shown.faces.node[shown.face]
     for corner_of_node in range(3):
         wanted = tree.corners[node, corner_of_node]
         for corner_of_face in range(3):
-            same = np.flatnonzero(faces.corners[shown.face, corner_of_face] == wanted)
-            values[2 * node[same] + shown.side[same], corner_of_node] = at_corners[same, corner_of_face]
-    return values
+            same = np.flatnonzero(shown.faces.corners[shown.face, corner_of_face] == wanted)
+            yield corner_of_node, same, corner_of_face

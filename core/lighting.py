@@ -32,9 +32,10 @@ from .subdivision import Faces
 from .surfaces import Surfaces
 from .workers import Workers
 
-LOOKS = 2
+LOOKS, LOOKS_BESIDE_WALLS = 2, 6
 """Times that gather rays are looked up again in the light of the vertices: each is one more bounce on the finest mesh,
-and a third changes less than the rays' noise."""
+and a third changes less than the rays' noise. But what patches under a thin wall let through to its dark side becomes
+less with each."""
 
 LARGEST_IMBALANCE = 0.03
 """Share of the power that may be missing, or too much, before the report warns of it."""
@@ -150,7 +151,7 @@ def looked_again(
     """Look the gather rays up again in the light of the vertices; returns the faces' light and what rays saw last."""
     left = left_emission(surfaces, patches.emitters)
     interpolated = InterpolatedRadiance(on_faces, light.reflectance, left, light.seen)
-    for _ in range(LOOKS):
+    for _ in range(LOOKS_BESIDE_WALLS if on_faces.beside_walls else LOOKS):
         radiance = Radiance.of(patches.cells, interpolated.at(shown), surfaces.world)
         shown = replace(shown, gathered=look_again(workers, radiance, shown.gathered))
     return shown, radiance
@@ -247,8 +248,10 @@ def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]
         return shown.faces, shown.face, shown.corner_irradiance()
     count, gathered, edges = len(shown.faces.triangle), shown.gathered, cuts.edges
     fronts = gathered.irradiance[shown.places.of_corner[:count]]
-    start = edges.seen
+    start, end = edges.seen, edges.hidden
     seen = drawn_to_cut(gathered.irradiance[start], cuts.seen.irradiance, edges.change, gathered.touching[start])
+    beyond = drawn_to_cut(gathered.irradiance[end], cuts.hidden.irradiance, edges.beyond, gathered.touching[end])
+    beyond = np.where(edges.beyond[:, None] > 0.0, beyond, cuts.hidden.irradiance)
     whole = np.flatnonzero(edges.whole)
     corner, light = values_on_outlines(
         shown.places.of_corner[:count], edges.taken(whole), seen[whole], ~cuts.seen.hidden[whole]
@@ -256,7 +259,7 @@ def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]
     fronts.reshape(-1, 3)[corner] = light
     values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
     cut = np.flatnonzero(~edges.whole)
-    sides = seen[cut], cuts.hidden.irradiance[cut]
+    sides = seen[cut], beyond[cut]
     return cut_faces(shown.faces, shown.face, shown.places, gathered.hidden, edges.taken(cut), values, *sides)
 
 

@@ -171,7 +171,7 @@ def test_light_on_an_outline_stays_on_its_side():
     of_corner = np.array([[0, 1, 2], [1, 0, 3]])
     seen, end = np.array([2, 2, 3, 3]), np.array([0, 1, 0, 1])
     ones, yes = np.ones(4), np.ones(4, dtype=bool)
-    edges = CutEdges(seen, end, seen, end, ones, ones, yes, yes)
+    edges = CutEdges(seen, end, seen, end, ones, ones, yes, yes, 0.0 * ones)
     light = np.array([1.0, 1.0, 0.0, 0.0])[:, None].repeat(3, axis=1)
     corner, value = values_on_outlines(of_corner, edges, light, yes)
     assert corner.tolist() == [0, 1, 3, 4]
@@ -229,7 +229,7 @@ def test_beyond_two_cuts_is_the_side_of_the_two_other_corners():
     start, end, seen, unseen = np.array([[0, 1, 0, 1], [0, 2, 0, 2], [2, 1, 3, 4], [2, 3, 3, 5]]).T
     half = np.full(4, 0.5)
     no = np.zeros(4, dtype=bool)
-    cuts = CutEdges(start, end, seen, unseen, half, half, no, no)
+    cuts = CutEdges(start, end, seen, unseen, half, half, no, no, 0.0 * half)
     bright, dark = np.ones((4, 3)), np.zeros((4, 3))
     values = np.where(hidden[of_corner], 0.0, 1.0)[..., None].repeat(3, axis=2)
     cut, face, light = cut_faces(faces, np.arange(2), places, hidden, cuts, values, bright, dark)

@@ -45,6 +45,42 @@ def test_a_wall_between_a_bright_room_and_a_dark_one_lets_nothing_through(scale,
 
 
 @GAPS
+@pytest.mark.parametrize("lean", [0.0, 0.3], ids=["straight", "slanted"])
+def test_a_wall_without_thickness_lets_nothing_through(gap, lean):
+    # It stands on faces that run on under it, whose corners lie on both sides of it.
+    lamp = exact.rectangle("lamp", (0.3, 0.3, 0.9), (0, 0.4, 0), (0.4, 0, 0), emission=5.0)
+    along = (2 * lean, 1 - 2 * gap, 0)
+    wall = exact.rectangle("wall", (1.03 - lean, gap, gap), along, (0, 0, 1 - 2 * gap), reflectance=0.5)
+    result = bake(Scene((exact.closed_room((2, 1, 1), reflectance=0.5), lamp, wall), DARK), DRAFT)
+
+    def distance(at):
+        return at[:, 0] - 1.03 - 2 * lean * (at[:, 1] - 0.5)
+
+    bright = mean_light(result, lambda at, normal: distance(at) < -0.04)
+    dark = mean_light(result, lambda at, normal: (distance(at) > 0.05) & (at[:, 0] < 2.01))
+    assert dark < 1e-3 * bright
+    # Nor does its dark side ask for faces that show nothing.
+    assert result.report["vertices"] < 4_000
+
+
+def test_beside_a_wall_without_thickness_a_dim_room_keeps_its_own_light():
+    # The same room alone, with the wall as one of its sides, is baked without any leak.
+    def lamp(x, emission):
+        return exact.rectangle("lamp", (x, 0.3, 0.9), (0, 0.4, 0), (0.4, 0, 0), emission=emission)
+
+    wall = exact.rectangle("wall", (1.03, -0.05, -0.05), (0, 1.1, 0), (0, 0, 1.1), reflectance=0.5)
+    room = exact.closed_room((2, 1, 1), reflectance=0.5)
+    both = bake(Scene((room, lamp(0.3, 5.0), lamp(1.4, 0.05), wall), DARK), DRAFT)
+    alone = bake(Scene((exact.closed_room((0.97, 1, 1), reflectance=0.5), lamp(0.37, 0.05)), DARK), DRAFT)
+    bright = mean_light(both, lambda at, normal: (at[:, 0] < 1.0) & (at[:, 2] < 0.89))
+
+    def dim(start):
+        return lambda at, normal: (at[:, 0] > start + 0.02) & (at[:, 0] < start + 0.96) & (at[:, 2] < 0.89)
+
+    assert abs(mean_light(both, dim(1.03)) - mean_light(alone, dim(0.0))) < 1e-3 * bright
+
+
+@GAPS
 def test_boards_that_make_a_closed_box_keep_the_sky_out(gap):
     t = 0.05
     boards = [
