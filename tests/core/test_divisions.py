@@ -25,7 +25,7 @@ def floor_and_wall(height=0.0, length=3.0):
 
 def floor_places():
     up, zero = np.tile(UP, (4, 1)), np.zeros((4, 3))
-    return Receivers(POINTS, up, up, np.arange(4), zero, np.ones(4), TRIANGLES)
+    return Receivers(POINTS, up, up, np.arange(4), zero, np.ones(4), 0 * np.arange(4), TRIANGLES)
 
 
 def floor_faces():
