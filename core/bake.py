@@ -24,7 +24,7 @@ from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces, receivers_of_nodes
 from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
 from .lit import Lit
-from .patches import clustered_patches
+from .patches import clustered_patches, coarse_count
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
@@ -74,6 +74,10 @@ FINER_FACES = 16.0
 LEAST_SEEING = 1.0 / 12.0
 """Share that what sees anything must have of the area that the automatic sizes are made for; of the ground that a block
 or a few houses stand on, more does. Where a wide ground has nearly all of it, they are made for that share."""
+
+MOST_COARSE = 4.0
+"""Coarse patches, in those of the quality, above which the sizes are not made smaller for what sees anything: of a lone
+ball only slivers at its poles seem to, and of a terrain what lies in its folds."""
 
 LARGEST_PATCH = 1.0 / 16.0
 """Share of the area that the sizes are made for, which a patch counts for at most. Where no ground is wide none is
@@ -321,6 +325,8 @@ def subdivided(
         if settings.method == "UNIFORM" or seeing == 0.0 or seeing >= LEAST_SEEING * area:
             return transport, rounds, area
         if minimum_sizes(surfaces, settings, effort, seeing)[0] >= smallest:
+            return transport, rounds, area
+        if coarse_count(surfaces, automatic_size(seeing, effort)) > MOST_COARSE * effort.patches:
             return transport, rounds, area
         area = seeing
 

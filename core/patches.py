@@ -361,15 +361,26 @@ def coarse_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
     """
     tree = PatchTree(surfaces)
     nodes = tree.leaves()
-    longest = tree.sizes(nodes)
-    width = 2.0 * surfaces.areas / np.maximum(longest, np.finfo(np.float64).tiny)
-    limit = np.maximum(LARGEST_ASPECT * width, 4.0 * smallest)
+    limit = _longest_pieces(surfaces, tree.sizes(nodes), smallest)
     while len(nodes):
         lengths = edge_lengths(tree.points, tree.corners[nodes])
         slender = lengths.max(axis=1, initial=0.0) > limit[tree.triangle[nodes]]
         nodes, lengths = nodes[slender], lengths[slender]
         nodes = tree.bisect(nodes, lengths.argmax(axis=1))
     return tree
+
+
+def _longest_pieces(surfaces: Surfaces, longest: Floats, smallest: float) -> Floats:
+    """How long the pieces of each triangle may be, (t,), from its longest edge."""
+    width = 2.0 * surfaces.areas / np.maximum(longest, np.finfo(np.float64).tiny)
+    return np.maximum(LARGEST_ASPECT * width, 4.0 * smallest)
+
+
+def coarse_count(surfaces: Surfaces, smallest: float) -> float:
+    """About how many coarse patches there are: pieces of slender triangles, and triangles that clusters leave out."""
+    longest = edge_lengths(surfaces.points, surfaces.triangles).max(axis=1)
+    pieces = longest / _longest_pieces(surfaces, longest, smallest)
+    return float(pieces[pieces > 1.0].sum()) + float((surfaces.areas[pieces <= 1.0] >= smallest**2).sum())
 
 
 def clustered_patches(surfaces: Surfaces, smallest: float) -> PatchTree:

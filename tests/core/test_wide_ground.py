@@ -9,7 +9,7 @@ import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.error_estimate import DIM, lit_area
 from radiosity_bake.core.patches import PatchTree
-from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.scene import Scene, SunLamp, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
 
@@ -70,3 +70,21 @@ def test_every_node_knows_the_patch_it_was_split_from():
     np.testing.assert_array_equal(ancestors[:count], np.arange(count))
     np.testing.assert_array_equal(ancestors[first], np.repeat([3, 5], 4))
     np.testing.assert_array_equal(ancestors[second], [5, 5])
+
+
+def test_slivers_that_seem_to_see_something_do_not_make_a_lone_ball_fine():
+    # As Blender makes a sphere of NURBS: its poles are holes of hardly any width, around which there are slivers.
+    around = 32
+    height = np.concatenate([[3e-7], np.linspace(0.0, np.pi, 17)[1:-1], [np.pi - 3e-7]])
+    turn = 2.0 * np.pi * np.arange(around) / around
+    rings = np.stack([np.outer(np.sin(height), np.cos(turn)), np.outer(np.sin(height), np.sin(turn))], axis=2)
+    points = np.concatenate([rings, np.repeat(np.cos(height)[:, None, None], around, axis=1)], axis=2)
+    points += np.random.default_rng(0).uniform(-1e-7, 1e-7, points.shape)
+    a = np.add.outer(around * np.arange(len(height) - 1), np.arange(around))
+    b = np.roll(a, -1, axis=1)
+    triangles = np.concatenate([np.stack(k, axis=2) for k in ((a, a + around, b), (b, a + around, b + around))])
+    ball = surface_mesh("ball", points.reshape(-1, 3), triangles.reshape(-1, 3), reflectance=0.5)
+    sun = SunLamp("sun", np.array([0.3, 0.1, -0.95]), 0.01, np.ones(3))
+    result = bake(Scene((ball,), np.zeros(3), (sun,)), DRAFT)
+    assert result.report["patches"] < len(ball.triangles)
+    assert result.report["minimum_size"] > 0.01
