@@ -16,7 +16,18 @@ from .lamps import FEW_LAMPS
 from .scene import Floats, Ints
 from .surfaces import Surfaces, signed_volumes
 from .visibility import Hits, RayScene
-from .walks import Steps, Walks, from_emitters, from_lamp, from_sides, from_world, meets_light, through_cracks, walked
+from .walks import (
+    Steps,
+    Walks,
+    from_emitters,
+    from_lamp,
+    from_sides,
+    from_world,
+    meets_light,
+    straight_to_emitters,
+    through_cracks,
+    walked,
+)
 
 WALKS = 16384
 """Random walks started; a side that takes part in the lighting of a room meets hundreds of them."""
@@ -150,7 +161,8 @@ def _is_reached(
     """Whether light reaches the sides in doubt, (shells, 2), by ways that are wider than a crack.
 
     Walks from what shines find an opening the sooner the less room there is for them; walks from the side itself, the
-    less room there is on its own side: under a wide sky it is these that find the window of a house.
+    less room there is on its own side: under a wide sky it is these that find the window of a house. Neither finds a
+    lamp of which little stands above the side's horizon, or one that is small and far away: that is looked at directly.
 
     Parameters
     ----------
@@ -168,7 +180,10 @@ def _is_reached(
     if len(asked) == 0:
         return reached.reshape(-1, 2)
     each = int(np.clip(WALKS // len(asked), FEWEST_WALKS, MOST_BACK))
-    back = walked(surfaces, rays, from_sides(surfaces, rays, asked >> 1, asked & 1 == 1, each, seed), seed + 1000)
+    starts = from_sides(surfaces, rays, asked >> 1, asked & 1 == 1, each, seed)
+    back = walked(surfaces, rays, starts, seed + 1000)
+    straight = straight_to_emitters(surfaces, rays, starts, each, seed + 2000)
+    straight = straight.taken(np.flatnonzero(shines[straight.triangle, straight.back.astype(np.int64)]))
     low, high = _bounds(surfaces)
     crack = WIDEST_CRACK * np.linalg.norm(high - low, axis=1)
     met = np.flatnonzero(np.isin(_side(surfaces, light), asked))
@@ -177,6 +192,7 @@ def _is_reached(
     for steps, last, side in (
         (light, met, _side(surfaces, light)[met]),
         (back, arrived, asked[back.walk[arrived] // each]),
+        (straight, np.arange(len(straight.walk)), asked[straight.walk // each]),
     ):
         chosen = _first_of_each(side, steps.walk[last])
         last, side = last[chosen], side[chosen]

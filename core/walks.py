@@ -214,6 +214,27 @@ def from_lamp(lamp: Lamp, surfaces: Surfaces, rays: RayScene, count: int, seed: 
     return Walks(np.full(count, -1, dtype=np.int64), np.zeros(count, dtype=bool), origin, direction)
 
 
+def straight_to_emitters(surfaces: Surfaces, rays: RayScene, starts: Walks, count: int, seed: int) -> Steps:
+    """Straight pieces from the origins of walks to places on what emits, where nothing is between.
+
+    Parameters
+    ----------
+    starts : Walks
+        From sides, `count` together of each.
+    """
+    ends = from_emitters(surfaces, rays, count, seed)
+    # Walks from a side begin in the order of its triangles, as these do.
+    order = np.argsort(hashed(np.arange(len(ends.triangle)), 1, seed + 5)[:, 0], kind="stable")
+    ends = ends.taken(np.tile(order, len(starts.triangle) // count))
+    starts = starts.taken(np.arange(len(ends.triangle)))
+    way = ends.origin - starts.origin
+    above = np.einsum("nx,nx->n", way, side_normals(surfaces.normals[starts.triangle], starts.back)) > 0.0
+    above &= np.einsum("nx,nx->n", way, side_normals(surfaces.normals[ends.triangle], ends.back)) < 0.0
+    walk = np.flatnonzero(above)
+    walk = walk[_is_clear(rays, starts.origin[walk], ends.origin[walk])]
+    return Steps(walk, ends.triangle[walk], ends.back[walk], starts.origin[walk], ends.origin[walk])
+
+
 def _even_directions(drawn: Floats) -> Floats:
     """Directions spread evenly over the sphere by the first two of the numbers drawn, from +z on, (n, 3)."""
     z, turn = 1.0 - 2.0 * drawn[:, 0], 2.0 * np.pi * drawn[:, 1]

@@ -220,3 +220,11 @@ def test_solids_too_small_for_walks_to_meet_are_solids():
     small = [block(f"block {i}", low, low + 0.02) for i, low in enumerate(corners)]
     sides = lit(ROOM, LAMP, *small)
     assert all(sides[m.name] == (True, False) for m in small)
+
+
+@pytest.mark.parametrize("height", [-0.5, -0.9, -0.99])
+def test_a_lamp_of_which_little_stands_above_a_floor_lights_it_from_above_too(height):
+    floor = exact.rectangle("floor", (0, 0, 0), (1, 0, 0), (0, 1, 0))
+    lamp = exact.rectangle("lamp", (-0.25, 0, height), (0, 1, 0), (0, 0, 1), emission=1.0)
+    # The lowest gives the back two thousand times as much, and one walk in sixteen thousand the front.
+    assert lit(floor, lamp)["floor"] == (True, True)
