@@ -5,7 +5,7 @@ PYTHON ?= python3
 MAIN := .venv/main/bin/python
 
 .DEFAULT_GOAL := help
-.PHONY: help venv zip demo web test test-core test-blender bench parity compare lint format clean
+.PHONY: help venv zip demo web test test-core test-blender bench parity stability compare lint format clean
 
 help: ## Say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
@@ -47,6 +47,11 @@ bench: ## Compare with other programs: accuracy, seconds, charts, docs/performan
 parity: ## Compare with Cycles, feature by feature: docs/parity.md
 	@$(PYTHON) -m tools.environments bench
 	@$(MAIN) -m bench.parity $(PARITY)
+
+# make stability STABILITY="gap wall" measures some sweeps again and keeps the others.
+stability: ## Scenes made worse step by step until methods fail, ours beside other programs: docs/stability.md
+	@$(PYTHON) -m tools.environments bench
+	@$(MAIN) -m bench.stability $(STABILITY)
 
 compare: ## The paper's table: adaptive against uniform subdivision at the same minimum size
 	@$(PYTHON) -m tools.environments bench

@@ -30,7 +30,7 @@ def draw_all(document: Document, folder: Path, kinds: Sequence[str] = ("svg", "p
     document : dict
         What `results.collect` returns.
     """
-    pyplot = _pyplot()
+    pyplot = new_pyplot()
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for name, make, measured in (
@@ -49,7 +49,8 @@ def draw_all(document: Document, folder: Path, kinds: Sequence[str] = ("svg", "p
     return paths
 
 
-def _pyplot() -> Any:
+def new_pyplot() -> Any:
+    """Return matplotlib's plotting module, which draws into files and needs no window."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""raystrack and pyViewFactor on one case, in a process of their own: `python form_factor_programs.py CASE.npz`.
+"""raystrack and pyViewFactor on cases, in a process of their own: `python form_factor_programs.py CASE.npz ...`.
 
-Reads plain arrays (see `bench.form_factors`), prints JSON, and imports nothing of ours. What numba compiles is compiled
-before the clock runs.
+Reads plain arrays (see `bench.form_factors`), prints a line of JSON for each, and imports nothing of ours. What numba
+compiles is compiled before the clock runs.
 """
 
 from __future__ import annotations
@@ -114,8 +114,9 @@ def main(given: str) -> None:
     # What they print is not ours to read.
     with contextlib.redirect_stdout(io.StringIO()):
         found = [*raystrack_runs(arrays), *pyviewfactor_runs(arrays)]
-    print(json.dumps(found))
+    print(json.dumps(found), flush=True)
 
 
 if __name__ == "__main__":
-    main(sys.argv[-1])
+    for path in sys.argv[1:]:
+        main(path)
