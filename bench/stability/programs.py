@@ -181,7 +181,8 @@ def at_nodes(case: Case) -> tuple[SurfaceMesh, Floats]:
     share = np.concatenate([[0.0], 0.5 * weight, [0.0]])
     s, t = (x.ravel() for x in np.meshgrid(along, along))
     mesh = surface_mesh("receiver", place.corner + s[:, None] * place.u + t[:, None] * place.v, squares(len(along)))
-    return mesh, np.outer(share, share).ravel()
+    # What is black Cycles bakes as dark; a flat receiver before a black emitter sees no light of its own.
+    return replace(mesh, reflectance=np.full_like(mesh.reflectance, 0.5)), np.outer(share, share).ravel()
 
 
 def squares(along: int) -> list[tuple[int, int, int]]:
