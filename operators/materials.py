@@ -106,6 +106,8 @@ def material_surface(material: bpy.types.Material | None) -> Surface:
     if not uses_nodes(material):
         return _surface(np.clip(material.diffuse_color[:3], 0.0, 1.0))
     shader = _sided(material.node_tree)
+    if _is_displaced(material):
+        shader = replace(shader, notes=(*shader.notes, "its displacement is left out; a Displace modifier takes part"))
     if varies(shader.reflectance):
         return shader
     reflectance = np.clip(shader.reflectance, 0.0, 1.0)
@@ -128,6 +130,12 @@ def _sided(tree: bpy.types.NodeTree) -> Surface:
         return replace(front, front_only=front_only)
     note = "it looks otherwise from behind; its front counts, but for emission that ends there"
     return replace(front, front_only=front_only, notes=(*front.notes, note))
+
+
+def _is_displaced(material: bpy.types.Material) -> bool:
+    """Return whether Cycles moves the surface itself."""
+    output = material.node_tree.get_output_node("CYCLES")
+    return material.displacement_method != "BUMP" and output is not None and output.inputs["Displacement"].is_linked
 
 
 def _alike(first: Colour | Varying, second: Colour | Varying) -> bool:
@@ -212,6 +220,10 @@ class _ShaderReader:
         return self._unsupported(node, groups)
 
     def _principled(self, node, groups) -> tuple[Value, Value, Value]:
+        for name in ("Metallic", "Transmission Weight"):
+            share = self._share(node, name, groups)
+            if varies(share) or share > 0.0:
+                self.notes.append(f"{name.split()[0]} reflects no diffuse light; that part counts as black")
         opaque = self._share(node, "Alpha", groups)
         rest = [self._share(node, name, groups) for name in ("Metallic", "Transmission Weight")]
         diffuse = combined(lambda alpha, *shares: alpha * np.prod([1.0 - s for s in shares], axis=0), opaque, *rest)

@@ -45,7 +45,7 @@ def store_refined(
 ) -> bpy.types.Object:
     """Make the refined object of `source`, show it and hide `source`; return it."""
     inverse = inverse_of(target.matrix)
-    mesh = _refined_mesh(_output_name(source), target, baked, attributes, inverse, journal)
+    mesh = _refined_mesh(output_name(source), target, baked, attributes, inverse, journal)
     _give_slots(mesh, source, target, baked, displays)
     output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
     if target.layers is not None:
@@ -60,7 +60,7 @@ def store_refined(
     return output
 
 
-def _output_name(source: bpy.types.Object) -> str:
+def output_name(source: bpy.types.Object) -> str:
     """Return "Room Radiosity" for "Room", and for a refined object of that name whose own original is gone."""
     return f"{_ADDED_TO_NAME.sub('', source.name)} Radiosity"
 

@@ -10,12 +10,13 @@ from ..core.errors import BakeError
 from ..core.result import BakeResult
 from . import display
 from .attributes import Attributes
+from .changes import clear_record
 from .extraction import Extraction
 from .in_place import check_names, keeps_names, store_in_place
 from .journal import Journal
 from .local_mesh import fingerprint
 from .places import same_place
-from .refined import store_refined
+from .refined import output_name, store_refined
 from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
 from .textured import Displays
@@ -68,6 +69,7 @@ def store(
     baked_objects = []
     with Journal() as journal:
         displays = Displays(attributes, journal)
+        warnings += [_set_free(copy, journal) for _, obj in found for copy in _copies(obj)]
         for (target, obj), (_, baked) in zip(found, pairs, strict=True):
             # A second bake in place only needs new values; what the first one remembers stays true.
             if not (output == "ORIGINAL" and keeps_names(obj, attributes)):
@@ -135,6 +137,24 @@ def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[
             )
         found.append((target, obj))
     return found
+
+
+def _copies(source: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return what the user duplicated of the refined mesh of `source`: all that stand for it but one."""
+
+    def is_likely_made_later(output: bpy.types.Object) -> tuple[bool, int]:
+        return output.name != output_name(source), output.session_uid
+
+    return sorted(outputs_of(source), key=is_likely_made_later)[1:]
+
+
+def _set_free(copy: bpy.types.Object, journal: Journal) -> str:
+    """Have a duplicate be an object of its own, which no bake replaces; return a sentence on it."""
+    clear_record(copy, journal)
+    return (
+        f'"{copy.name}" is a copy of a refined object: it was kept as it is, with the light of the earlier bake. '
+        "To bake it, restore and duplicate the original instead"
+    )
 
 
 def _cautions(target: Target, obj: bpy.types.Object, output: str) -> list[str]:

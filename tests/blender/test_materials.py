@@ -156,6 +156,24 @@ def test_a_glossy_shader_reflects_no_diffuse_light_and_is_named():
     assert "Glossy" in note
 
 
+@pytest.mark.parametrize("name", ["Metallic", "Transmission_Weight"])
+def test_the_part_of_a_principled_shader_that_is_not_diffuse_is_named(name):
+    (note,) = material_surface(principled(**{name: 0.5})).notes
+    assert name.split("_")[0] in note
+
+
+def test_displacement_is_named_where_it_moves_the_surface():
+    material = principled()
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeDisplacement")
+    tree.links.new(node.outputs[0], tree.get_output_node("CYCLES").inputs["Displacement"])
+    material.displacement_method = "BUMP"
+    assert material_surface(material).notes == ()
+    material.displacement_method = "DISPLACEMENT"
+    (note,) = material_surface(material).notes
+    assert "displacement" in note
+
+
 def test_an_unknown_shader_is_left_to_blender_and_grey_until_then():
     material = node_material("Hair", "ShaderNodeEeveeSpecular")
     assert_surface(material, GREY)

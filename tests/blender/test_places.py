@@ -125,6 +125,21 @@ def test_a_moved_duplicate_does_not_move_the_original():
     assert (cube.location.x, refined("Cube").location.x) == (0.0, 0.0)
 
 
+def test_a_duplicate_of_a_refined_object_is_kept_and_that_is_said():
+    _, output = baked_cube()
+    copy = output.copy()
+    copy.data = output.data.copy()
+    copy.name = "A chair of mine"
+    bpy.context.scene.collection.objects.link(copy)
+    copy.select_set(True)
+    bake_selected("REFINED")
+    copy = bpy.data.objects["A chair of mine"]
+    assert copy.data.color_attributes["Radiosity"] is not None and copy.material_slots[0].material is not None
+    assert any("A chair of mine" in warning for warning in report()["warnings"])
+    assert bpy.ops.radiosity.restore() == {"FINISHED"}
+    assert "A chair of mine" in bpy.data.objects
+
+
 def test_an_animated_object_stays_where_its_animation_puts_it_and_that_is_said():
     cube, output = baked_cube(animated)
     output.animation_data_clear()
