@@ -206,6 +206,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
     cuts, on_faces = None, None
+    walls = ~surfaces.closed[surfaces.shell_of_triangle]
     if settings.output == "ORIGINAL":
         faces = input_faces(surfaces)
         shown = light_up_first(faces, counted_share_of_triangles(tree, LARGEST_PATCH * area)[faces.triangle])
@@ -226,13 +227,14 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         if shown.gathered.places.rays:
             of_cells = aside[cover.base_of(cells.element)]
             of_node = receivers_of_nodes(leaves, shown)
-            divisions = Divisions.of(blocked_edges(rays, shown.places, of_node, shown.gathered.hidden, finest))
+            # Solids hide what is in them; nothing sees it.
+            divisions = Divisions.of(blocked_edges(rays, shown.places, of_node, shown.gathered.hidden, finest, walls))
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells, of_node, divisions)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
         hidden, touching = shown.gathered.hidden, shown.gathered.touching
         fronts = shown.places.of_corner[: len(shown.faces.triangle)]
-        ways = blocked_edges(rays, shown.places, fronts, hidden, finest)
+        ways = blocked_edges(rays, shown.places, fronts, hidden, finest, walls)
         edges = CutEdges.joined(
             [
                 find_cuts(shown.faces, shown.places, hidden, is_hidden),

@@ -23,7 +23,9 @@ BESIDE_END = 1e-3
 """Share of an edge from its ends at which nothing divides it: what a ray meets there, it met where it began."""
 
 
-def ways_along(rays: RayScene, places: Receivers, start: Ints, end: Ints, finest: float) -> Floats:
+def ways_along(
+    rays: RayScene, places: Receivers, start: Ints, end: Ints, finest: float, walls: NDArray[np.bool_]
+) -> Floats:
     """How far rays get from some receivers to others, as shares of the way, (k,); 1 where nothing stands in between.
 
     They run at the height up to which a gap counts as closed, as `gather` has it.
@@ -34,13 +36,16 @@ def ways_along(rays: RayScene, places: Receivers, start: Ints, end: Ints, finest
         Receivers.
     finest : float, scene units
         Size that faces may be split down to.
+    walls : (triangles,) bool
+        Those that count.
     """
 
     def work(first: int, last: int) -> Floats:
         part = slice(first, last)
         origins, ends = (_above(rays, places, which[part], finest) for which in (start, end))
         found = rays.first_hits(origins, ends - origins)
-        share: Floats = np.minimum(found.distance.astype(np.float64), 1.0)
+        met = (found.triangle >= 0) & walls[found.triangle]
+        share: Floats = np.where(met, np.minimum(found.distance.astype(np.float64), 1.0), 1.0)
         return share
 
     parts = rays.workers.map(work, len(start), 1)
@@ -50,6 +55,10 @@ def ways_along(rays: RayScene, places: Receivers, start: Ints, end: Ints, finest
 def _above(rays: RayScene, places: Receivers, which: Ints, finest: float) -> Singles:
     height = COVER_GAP * np.minimum(places.sizes[which], finest)
     return rays.local(places.points[which] + places.lift[which] * height[:, None])
+
+
+THICKNESS = 0.02
+"""Share of an edge up to which what stands on it is a wall, and not the corner of a block that the edge passes by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +74,7 @@ class Divisions:
     reach : (k, 2) float
         How far its side reaches on the edges to the next corner and to the one before, as shares of them.
     thin : (k,) bool
-        Whether no corner is hidden: a wall passes between them.
+        Whether that has no thickness to speak of.
     """
 
     number: Ints
@@ -76,17 +85,19 @@ class Divisions:
     @staticmethod
     def of(ways: Floats) -> Divisions:
         """Divide the triangles two of whose edges are blocked; `ways` (n, 3, 2) as `blocked_edges` has them."""
-        blocked = (ways < 1.0).any(axis=2)
+        blocked = (ways < 1.0).all(axis=2)
         number = np.flatnonzero(blocked.sum(axis=1) == 2)
         # Behind the edge that is free stand its two corners, before it the third.
         alone = (np.argmin(blocked[number], axis=1) + 2) % 3
-        ways = ways[number]
-        both = (ways < 1.0).all(axis=2)
-        from_seen = np.where(ways[..., 0] < 1.0, ways[..., 0], 1.0 - ways[..., 1])
-        share = np.where(both, (ways[..., 0] + 1.0 - ways[..., 1]) / 2.0, from_seen)
+        share = (ways[number, :, 0] + 1.0 - ways[number, :, 1]) / 2.0
         row = np.arange(len(number))
         reach = np.stack([share[row, alone], 1.0 - share[row, (alone + 2) % 3]], axis=1)
-        return Divisions(number, alone, reach, both.sum(axis=1) == 2)
+        return Divisions(
+            number,
+            alone,
+            reach,
+            (ways[number].sum(axis=2) > 1.0 - THICKNESS)[blocked[number]].reshape(-1, 2).all(axis=1),
+        )
 
     def own_corners(self, triangle: Ints, weights: Floats) -> tuple[Ints, Floats]:
         """Barycentric coordinates of places with the corners beyond the division left out.
@@ -120,19 +131,24 @@ class Divisions:
 
 
 def blocked_edges(
-    rays: RayScene, places: Receivers, of_corner: Ints, hidden: NDArray[np.bool_], finest: float
+    rays: RayScene,
+    places: Receivers,
+    of_corner: Ints,
+    hidden: NDArray[np.bool_],
+    finest: float,
+    walls: NDArray[np.bool_],
 ) -> Floats:
     """How far the edges 0-1, 1-2 and 2-0 of triangles are free of what stands on them, (n, 3, 2).
 
-    From their first corner and from their second, as shares of the edge; 1 from a hidden end, as nothing is looked at
-    from there, and both ways where nothing stands on the edge.
+    From their first corner and from their second, as shares of the edge; 1 both ways where nothing stands on it, and
+    where an end is hidden.
 
     Parameters
     ----------
     of_corner : (n, 3) int
         Receivers of the corners; -1 where there is none.
     hidden : (receivers,) bool
-    finest : float
+    finest, walls
         As of `ways_along`.
     """
     start, end = of_corner.ravel(), np.roll(of_corner, -1, axis=1).ravel()
@@ -141,13 +157,13 @@ def blocked_edges(
     pairs, number = np.unique((np.minimum(start, end) << 32) | np.maximum(start, end), return_inverse=True)
     ends = np.stack([pairs >> 32, pairs & 0xFFFFFFFF])
     way = np.ones((2, len(pairs)))
+    looked = np.flatnonzero(~hidden[ends].any(axis=0))
     for first, second in ((0, 1), (1, 0)):
+        way[first, looked] = ways_along(rays, places, ends[first, looked], ends[second, looked], finest, walls)
         # What stands between two seen ends is met from both.
-        looked = np.flatnonzero(~hidden[ends[first]] & (hidden[ends[second]] | (first == 0) | (way[0] < 1.0)))
-        way[first, looked] = ways_along(rays, places, ends[first, looked], ends[second, looked], finest)
-    both = ~hidden[ends].any(axis=0)
-    free = ((way < BESIDE_END) | (way > 1.0 - BESIDE_END) & ~hidden[ends]).any(axis=0)
-    way[:, free | (both & (way.sum(axis=0) > 1.0 + BESIDE_END))] = 1.0
+        looked = looked[way[first, looked] < 1.0]
+    free = ((way < BESIDE_END) | (way > 1.0 - BESIDE_END)).any(axis=0)
+    way[:, free | (way.sum(axis=0) > 1.0 + BESIDE_END)] = 1.0
     result = np.ones((of_corner.size, 2))
     turned = start != ends[0, number]
     result[known] = np.where(turned[:, None], way[::-1, number].T, way[:, number].T)

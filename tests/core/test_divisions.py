@@ -35,12 +35,13 @@ def floor_faces():
 
 
 NONE_HIDDEN = np.zeros(4, dtype=bool)
+ALL = np.ones(4, dtype=bool)
 
 
 @pytest.mark.parametrize("height", [0.0, 1e-3], ids=["on the floor", "a hair above it"])
 def test_a_wall_is_met_where_it_stands_on_the_edges_from_both_ends(height):
     rays = floor_and_wall(height)
-    ways = blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05)
+    ways = blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05, ALL)
     rays.close()
     expected = [[[0.4, 0.6], [1, 1], [0.8, 0.2]], [[1, 1], [0.6, 0.4], [0.2, 0.8]]]
     # The wall stands where x + y is 0.4; single precision of coordinates up to 1.
@@ -49,14 +50,14 @@ def test_a_wall_is_met_where_it_stands_on_the_edges_from_both_ends(height):
 
 def test_what_hangs_higher_than_a_gap_divides_nothing():
     rays = floor_and_wall(height=0.1)
-    assert (blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05) == 1.0).all()
+    assert (blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05, ALL) == 1.0).all()
     rays.close()
 
 
 def test_a_wall_that_ends_within_a_triangle_does_not_divide_it():
     # It crosses the diagonal, and ends before the two other edges.
     rays = floor_and_wall(length=0.5)
-    ways = blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05)
+    ways = blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05, ALL)
     rays.close()
     assert (ways < 1.0).all(axis=2).sum() == 2
     assert len(Divisions.of(ways).number) == 0
@@ -65,7 +66,7 @@ def test_a_wall_that_ends_within_a_triangle_does_not_divide_it():
 
 def test_places_take_the_corners_of_their_own_side_alone():
     rays = floor_and_wall()
-    divisions = Divisions.of(blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05))
+    divisions = Divisions.of(blocked_edges(rays, floor_places(), TRIANGLES, NONE_HIDDEN, 0.05, ALL))
     rays.close()
     assert divisions.number.tolist() == [0, 1]
     assert divisions.alone.tolist() == [0, 2]
@@ -88,7 +89,7 @@ def test_places_take_the_corners_of_their_own_side_alone():
 def test_the_two_pieces_of_a_divided_face_take_the_light_of_their_own_side():
     rays = floor_and_wall()
     faces, places = floor_faces(), floor_places()
-    cuts = edges_under_walls(faces, places, NONE_HIDDEN, blocked_edges(rays, places, TRIANGLES, NONE_HIDDEN, 0.05))
+    cuts = edges_under_walls(faces, places, NONE_HIDDEN, blocked_edges(rays, places, TRIANGLES, NONE_HIDDEN, 0.05, ALL))
     rays.close()
     assert len(cuts.start) == 3
     # Corner 0 is in the bright room, all others are in the dark one; each cut is drawn from both of its ends.
