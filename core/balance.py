@@ -13,6 +13,7 @@ from .direct import Emitters, direct_light
 from .direct_light import DirectLight
 from .errors import UnsolvableError
 from .geometry import order_along_curve
+from .near_lamps import near_shares
 from .patches import PatchTree
 from .rows import ESCAPED, Cover, Shares
 from .scene import UNLINKED, Floats, Ints, Texture
@@ -281,7 +282,15 @@ def _direct_on(
     elements, partly = balance.elements[rows], balance.buried[rows] > 0.0
     points, normals = sample_points(transport.surfaces, transport.tree, elements, count, transport.seed + 51)
     points[partly], normals[partly] = transport.open_points(elements[partly], count)
-    return _direct_at(transport, emitters, elements, points, normals, report)
+    light = _direct_at(transport, emitters, elements, points, normals, report)
+    tree = transport.tree
+    simple = np.flatnonzero(~partly & ~tree.is_cluster(elements >> 1))
+    corners = tree.points[tree.corners[elements[simple] >> 1]]
+    for number, near in near_shares(emitters.lamps, corners, points[simple], normals[simple]).items():
+        share = np.ones(len(elements))
+        share[simple] = near
+        light = light.weighted_of(len(emitters.triangle) + number, np.repeat(share, count))
+    return light
 
 
 def _direct_at(

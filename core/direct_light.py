@@ -77,6 +77,12 @@ class DirectLight:
         factor = np.broadcast_to(share, self.count)[self.receiver]
         return DirectLight(self.count, self.receiver, self.emitter, self.weight * factor)
 
+    def weighted_of(self, emitter: int, share: Floats) -> DirectLight:
+        """The same entries, those of one emitter times a share of each receiver, (self.count,)."""
+        of_it = self.emitter == emitter
+        factor = np.where(of_it, share[self.receiver], 1.0)
+        return DirectLight(self.count, self.receiver, self.emitter, self.weight * factor)
+
     def with_more(self, taken: Ints, more: DirectLight, rows: Ints) -> DirectLight:
         """The receivers `taken`, each at most once, of which `rows` are replaced by `more`."""
         place = np.full(self.count, -1, dtype=np.int64)
