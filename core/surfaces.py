@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
 from .geometry import lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
+from .limits import LARGEST_COORDINATE, lamp_warnings, light_warnings, sound_lamp, sound_light
 from .scene import Floats, Ints, Lamp, LightLinking, Scene, SurfaceMesh, Texture
 from .textures import joined, mean_colours, with_means
 
@@ -60,7 +61,7 @@ class Surfaces:
         Largest edge of the bounding box.
     world : (3,) or (cells, 3) float
     lamps : tuple of Lamp
-        No strength is negative.
+        As `core.limits` takes them.
     warnings : tuple of str
         What is wrong with the triangles, and
     colour_warnings : tuple of str
@@ -149,7 +150,7 @@ def signed_volumes(surfaces: Surfaces) -> Floats:
 
 
 def join(scene: Scene) -> Surfaces:
-    """Join the meshes of a scene, leaving out triangles that are not finite or have no area.
+    """Join the meshes of a scene, leaving out triangles that lie nowhere or have no area.
 
     Raises
     ------
@@ -160,9 +161,9 @@ def join(scene: Scene) -> Surfaces:
     extent = _extent(scene.meshes)
     kept = [_sound(mesh, extent, warnings) for mesh in scene.meshes]
     if not any(mesh.baked and len(keep) for mesh, keep in zip(scene.meshes, kept, strict=True)):
-        raise NothingToBakeError("None of the meshes to bake has a face with an area; select a mesh that has faces")
+        raise NothingToBakeError(_no_face(scene, kept))
     first_point = np.concatenate([[0], np.cumsum([len(mesh.vertices) for mesh in scene.meshes])]).astype(np.int64)
-    points = np.concatenate([np.nan_to_num(m.vertices, nan=0.0, posinf=0.0, neginf=0.0) for m in scene.meshes])
+    points = np.concatenate([_finite(mesh.vertices) for mesh in scene.meshes])
     places = np.concatenate([welded(_finite(m.vertices)) + o for m, o in zip(scene.meshes, first_point, strict=False)])
 
     triangles = np.concatenate([m.triangles[k] + o for m, k, o in zip(scene.meshes, kept, first_point, strict=False)])
@@ -215,16 +216,28 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
     if pale is not None:
         pale = replace(pale, colours=np.clip(np.nan_to_num(pale.colours, posinf=1.0), 0.0, 1.0))
     if bright is not None:
-        bright = replace(bright, colours=_not_negative(bright.colours).astype(np.float32))
+        bright = replace(bright, colours=sound_light(bright.colours).astype(np.float32))
     return {
         "reflectance": with_means(np.clip(reflectance, 0.0, 1.0), pale),
-        "emission": with_means(_not_negative(emission), bright),
+        "emission": with_means(sound_light(emission), bright),
         "reflectance_texture": pale,
         "emission_texture": bright,
-        "world": _not_negative(scene.world),
-        "lamps": tuple(replace(lamp, strength=_not_negative(lamp.strength)) for lamp in scene.lamps),
-        "colour_warnings": tuple(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names),
+        "world": sound_light(scene.world),
+        "lamps": tuple(sound_lamp(lamp) for lamp in scene.lamps),
+        "colour_warnings": (
+            *(f"{name}: a base colour outside 0 to 1 was limited to it" for name in names),
+            *_light_warnings(scene),
+        ),
     }
+
+
+def _light_warnings(scene: Scene) -> list[str]:
+    """Sentences on emission, world and lamps that are not taken as they are."""
+    told = [light_warnings(mesh.name, "emission", mesh.emission) for mesh in scene.meshes]
+    textures = [(mesh.name, mesh.emission_texture) for mesh in scene.meshes]
+    told += [light_warnings(name, "emission", t.colours) for name, t in textures if t is not None]
+    told += [light_warnings("World", "light", scene.world), *(lamp_warnings(lamp) for lamp in scene.lamps)]
+    return list(dict.fromkeys(sentence for sentences in told for sentence in sentences))
 
 
 def _marked(marks: list[NDArray[np.bool_] | None], kept: list[Ints]) -> NDArray[np.bool_]:
@@ -234,35 +247,54 @@ def _marked(marks: list[NDArray[np.bool_] | None], kept: list[Ints]) -> NDArray[
     )
 
 
-def _not_negative(light: Floats | NDArray[np.float32]) -> Floats:
-    """Light that is a finite number, 0 where it was none or negative."""
-    sound: Floats = np.maximum(np.nan_to_num(np.asarray(light, dtype=np.float64), posinf=0.0), 0.0)
-    return sound
-
-
 def _finite(vertices: Floats) -> Floats:
-    return np.nan_to_num(vertices, nan=0.0, posinf=0.0, neginf=0.0)
+    """The vertices, those that lie nowhere moved to the origin: no triangle that is left has them."""
+    return np.where(_somewhere(vertices)[:, None], vertices, 0.0)
+
+
+def _somewhere(points: Floats) -> NDArray[np.bool_]:
+    """Whether points (..., 3) lie within the limits."""
+    return np.asarray((np.abs(points) <= LARGEST_COORDINATE).all(axis=-1))
 
 
 def _extent(meshes: tuple[SurfaceMesh, ...]) -> float:
-    used = [m.vertices[m.triangles.ravel()] for m in meshes if len(m.triangles)]
-    finite = np.concatenate([p[np.isfinite(p).all(axis=1)] for p in used] or [np.zeros((0, 3))])
-    return float(np.ptp(finite, axis=0).max()) if len(finite) else 0.0
+    corners = [m.vertices[m.triangles] for m in meshes]
+    used = np.concatenate([c[_somewhere(c).all(axis=1)].reshape(-1, 3) for c in corners] or [np.zeros((0, 3))])
+    return float(np.ptp(used, axis=0).max()) if len(used) else 0.0
 
 
 def _sound(mesh: SurfaceMesh, extent: float, warnings: list[str]) -> Ints:
-    """Triangles of a mesh that are finite and have an area; the others are named in a warning."""
+    """Triangles of a mesh that lie somewhere and have an area; the others are named in a warning."""
     corners = mesh.vertices[mesh.triangles]
+    somewhere = _somewhere(corners).all(axis=1)
     finite = np.isfinite(corners).all(axis=(1, 2))
     area = np.zeros(len(corners))
-    sound = corners[finite]
-    area[finite] = triangle_areas(sound)
-    flat = finite & (area <= SMALLEST_AREA * extent * extent)
-    if not finite.all():
-        warnings.append(f"{mesh.name}: {int((~finite).sum())} triangles with coordinates that are not numbers left out")
-    if flat.any():
-        warnings.append(f"{mesh.name}: {int(flat.sum())} triangles without area left out")
-    return np.flatnonzero(finite & ~flat)
+    area[somewhere] = triangle_areas(corners[somewhere])
+    small = somewhere & (area <= SMALLEST_AREA * extent * extent)
+    for left_out, why in (
+        (~finite, "with coordinates that are not numbers"),
+        (finite & ~somewhere, f"with coordinates beyond {LARGEST_COORDINATE:.0e}"),
+        (small & (area == 0.0), "without area"),
+        (small & (area > 0.0), f"without area to speak of in a scene of {extent:.1e}"),
+    ):
+        if left_out.any():
+            warnings.append(f"{mesh.name}: {int(left_out.sum())} triangles {why} left out")
+    return np.flatnonzero(somewhere & ~small)
+
+
+def _no_face(scene: Scene, kept: list[Ints]) -> str:
+    """Why there is nothing to bake, and what to do."""
+    corners = np.concatenate([m.vertices[m.triangles] for m in scene.meshes if m.baked] or [np.zeros((0, 3, 3))])
+    if not (triangle_areas(corners[_somewhere(corners).all(axis=1)]) > 0.0).any():
+        return "None of the meshes to bake has a face with an area; select a mesh that has faces"
+    reach = [
+        float(np.abs(m.vertices[m.triangles[k]]).max(initial=0.0)) for m, k in zip(scene.meshes, kept, strict=True)
+    ]
+    farthest = int(np.argmax(reach))
+    return (
+        f'The meshes to bake are too small beside "{scene.meshes[farthest].name}", which reaches {reach[farthest]:.1e} '
+        "far; hide that one, or scale it down"
+    )
 
 
 def _shading_normals(corner_normals: Floats, normals: Floats) -> Floats:
