@@ -50,6 +50,13 @@ EXACT_ANGLE = 0.1
 """Radius over distance of a light from which on its form factor is computed exactly; below it, what the formula for
 nodes gives is off by a hundredth at most."""
 
+FAINTEST = 1e-30
+"""Below this share of its flux a light sends a receiver none, and one that gets less in all is dark: what is divided by
+it is still a float32."""
+
+CLOSEST = np.float32(np.sqrt(np.finfo(np.float32).tiny))
+"""Square of a distance below which its own square is no float32."""
+
 
 @dataclass(frozen=True, eq=False)
 class _Places:
@@ -128,7 +135,7 @@ def _all_lights(tree: LightTree, places: _Places) -> Cut:
     square += (centre * centre).sum(axis=0)
     # Nearer than its size, a light is computed exactly.
     near = square * np.float32(EXACT_ANGLE**2) < radius * radius
-    np.maximum(square, radius * radius / 4.0, out=square)
+    np.maximum(square, np.maximum(radius * radius / 4.0, CLOSEST), out=square)
     square *= square
     light = np.maximum(facing, 0.0, out=facing)
     light *= np.maximum(height, 0.0, out=height)
@@ -234,7 +241,8 @@ def _partly_hidden(
     node = found.node[draw.pair]
     light, seen, weight = _tried(tree, rays, places, node, receiver, draw)
     # Against what the rays were drawn by.
-    weight *= (tree.shape[1, node] / found.light[draw.member, draw.pair]).repeat(draw.rays)
+    flux = tree.shape[1, node]
+    weight *= (flux / np.maximum(found.light[draw.member, draw.pair], FAINTEST * flux)).repeat(draw.rays)
     ray = total.T.ravel() / shadow_rays
     visible, variance = _visible_shares(groups * size, draw, receiver, ray, seen, weight, shadow_rays)
     uncertainty = np.sqrt(variance).reshape(groups, size)
@@ -295,7 +303,7 @@ def _draw(found: Cut, start: Ints, total: Singles, shift: Floats, shadow_rays: i
     shift : (size, g) float
         Of the first ray.
     """
-    per_light = np.divide(shadow_rays, total, out=np.zeros_like(total), where=total > 0.0)
+    per_light = np.divide(shadow_rays, total, out=np.zeros_like(total), where=total > FAINTEST)
     share = found.light * per_light.take(found.group, axis=1)
     before = np.cumsum(share, axis=1, dtype=np.float64)
     if len(start) > 1:
@@ -336,7 +344,9 @@ def _tried(
     light = np.searchsorted(tree.flux_before, flux, side="right") - 1
     light = np.clip(light, tree.first[node].repeat(draw.rays), (tree.last[node] - 1).repeat(draw.rays))
     before = tree.flux_before[light]
-    away = np.sqrt(np.clip((flux - before) / (tree.flux_before[light + 1] - before), 0.0, 1.0)).astype(np.float32)
+    # Beside a bright light, a faint one adds nothing to the sum.
+    own = np.maximum(tree.flux_before[light + 1] - before, np.finfo(np.float64).tiny)
+    away = np.sqrt(np.clip((flux - before) / own, 0.0, 1.0)).astype(np.float32)
     across = np.mod(number * GOLDEN + shifts[:, 1][receiver], 1.0).astype(np.float32) * away
     corners, facing = tree.single_corners.take(light, axis=0), tree.normals.take(light, axis=0)
     place = corners[:, 0] * (1.0 - away)[:, None]
