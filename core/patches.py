@@ -21,6 +21,13 @@ FOUR = 3
 LARGEST_ASPECT = 4.0
 """Longest edge over lowest altitude above which the coarse triangulation halves a triangle (right isosceles: 2)."""
 
+MOST_PIECES, PIECES_OF_EACH = 2**20, 8.0
+"""Pieces that the coarse triangulation may make of slender triangles: so many, and these for each triangle there is.
+A sliver a mile long may be a billion times as long as the size that was asked for."""
+
+HALVING = float(np.log2(3.0))
+"""Power of its length over that of its pieces by which a sliver's pieces become more: three are half as long."""
+
 
 class PatchTree:
     """Triangles, each either a leaf or split into two or four children.
@@ -357,11 +364,16 @@ def coarse_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
 
     Halving the longest edge never lowers the smallest angle by more than half (Rivara 1984). It ends where the pieces
     are no longer than a few times the width of the triangle they come from, so that a strip becomes a row of them, and
-    where an edge is shorter than four times `smallest`, so that refinement below still has room.
+    where an edge is shorter than four times `smallest`, so that refinement below still has room, or sooner where there
+    would be more than `MOST_PIECES`.
     """
     tree = PatchTree(surfaces)
     nodes = tree.leaves()
-    limit = _longest_pieces(surfaces, tree.sizes(nodes), smallest)
+    longest = tree.sizes(nodes)
+    limit = _longest_pieces(surfaces, longest, smallest)
+    most = MOST_PIECES + PIECES_OF_EACH * len(nodes)
+    if (np.maximum(longest / limit, 1.0) ** HALVING).sum() > most:
+        limit = np.maximum(limit, ((longest**HALVING).sum() / most) ** (1.0 / HALVING))
     while len(nodes):
         lengths = edge_lengths(tree.points, tree.corners[nodes])
         slender = lengths.max(axis=1, initial=0.0) > limit[tree.triangle[nodes]]
