@@ -5,7 +5,7 @@ PYTHON ?= python3
 MAIN := .venv/main/bin/python
 
 .DEFAULT_GOAL := help
-.PHONY: help venv zip demo web test test-core test-blender bench parity stability compare lint format clean
+.PHONY: help venv zip demo web test test-core test-blender nightly bench parity stability compare lint format clean
 
 help: ## Say what can be made
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 15
@@ -32,6 +32,10 @@ ifdef BLENDER
 else
 	@$(MAIN) -m tools.run_tests "blender py"
 endif
+
+# make nightly NIGHTLY="--minutes 480"
+nightly: venv ## Try thousands of random ugly scenes that the tests have not tried
+	@$(MAIN) -m tools.nightly $(NIGHTLY)
 
 WEB ?= out/demo/cornell_box_baked.blend
 
