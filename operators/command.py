@@ -276,7 +276,10 @@ def _save(temporary: Path, output: Path) -> None:
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
     except RuntimeError as error:
-        raise CommandError(f"{output} could not be written: {_sentence(error)}") from error
+        # Of a disk that is full, Blender tells that the file which it then removed is not there.
+        raise CommandError(
+            f"{output} could not be written ({_sentence(error)}); look whether the disk is full"
+        ) from error
 
 
 def _sentence(error: RuntimeError) -> str:
