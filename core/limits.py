@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .scene import Floats, Lamp, PointLamp, SunLamp
+from .scene import AreaLamp, Floats, Lamp, PointLamp, SunLamp
 
 LARGEST_COORDINATE = 1e12
 """Scene units beyond which nothing lies: neighbouring float32 are 65536 apart there, and of 1.8e19 a square is none."""
@@ -43,7 +42,7 @@ def sound_lamp(lamp: Lamp) -> Lamp:
     """A lamp that light can be computed of: dark, and without a place, where it has none that is a number."""
     if _has_a_place(lamp):
         return replace(lamp, strength=sound_light(lamp.strength))
-    return PointLamp(lamp.name, np.zeros(3), 0.0, np.zeros(3), shadow=lamp.shadow)
+    return PointLamp(lamp.name, np.zeros(3), 0.0, np.zeros(3), shadow=lamp.shadow, linking=lamp.linking)
 
 
 def lamp_warnings(lamp: Lamp) -> list[str]:
@@ -55,17 +54,13 @@ def lamp_warnings(lamp: Lamp) -> list[str]:
 
 def _has_a_place(lamp: Lamp) -> bool:
     """Whether all that tells where it is, how large, and where it shines to, is a number within the limits."""
-    shape = [getattr(lamp, field.name) for field in fields(lamp) if field.name not in {"name", "strength", "cone"}]
-    if not all(_within(value) for value in shape):
-        return False
-    if isinstance(lamp, PointLamp):
-        return lamp.radius >= 0.0 and (lamp.cone is None or _is_finite(lamp.cone.inverse))
-    return bool(np.any(lamp.direction if isinstance(lamp, SunLamp) else lamp.normal))
+    if isinstance(lamp, AreaLamp):
+        return bool(np.any(lamp.normal)) and _within(lamp.centre, lamp.half_axes, lamp.normal, np.array(lamp.spread))
+    if isinstance(lamp, SunLamp):
+        return bool(np.any(lamp.direction)) and _within(lamp.direction, np.array(lamp.angle))
+    turned = lamp.cone is None or bool(np.isfinite(lamp.cone.inverse).all())
+    return turned and lamp.radius >= 0.0 and _within(lamp.centre, np.array(lamp.radius))
 
 
-def _within(value: Any) -> bool:
-    return bool((np.abs(value) <= LARGEST_COORDINATE).all())
-
-
-def _is_finite(value: Floats) -> bool:
-    return bool(np.isfinite(value).all())
+def _within(*values: Floats) -> bool:
+    return all(bool((np.abs(value) <= LARGEST_COORDINATE).all()) for value in values)

@@ -12,11 +12,18 @@ import signal
 from contextlib import contextmanager
 
 import numpy as np
+import pytest
 from hypothesis import HealthCheck, given, settings
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.errors import NoLightError, NothingToBakeError, UnsolvableError
 from radiosity_bake.core.lighting import LARGEST_IMBALANCE
+from radiosity_bake.core.patches import coarse_patches
+from radiosity_bake.core.scene import AreaLamp, PointLamp, Scene, SunLamp, surface_mesh
+from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.core.surfaces import join
 
+from tests.core.building import DARK
+from tests.scenes import exact
 from tests.scenes.ugly import UglyScene, ugly_scenes
 
 NIGHTLY_SCENES = int(os.environ.get("UGLY_SCENES", "0"))
@@ -119,3 +126,52 @@ def test_any_scene_ends_in_sound_values_or_in_a_sentence(ugly):
         check_energy(ugly, result)
         check_company(ugly, result)
         check_named(ugly, result)
+
+
+COARSE = BakeSettings(quality="DRAFT", minimum_size=0.5)
+FLOOR = exact.rectangle("floor", (-1, -1, 0), (2, 0, 0), (0, 2, 0), reflectance=0.5)
+WHITE, UP = np.ones(3), np.array([0.0, 0.0, 1.0])
+NOWHERE = np.array([np.nan, 0.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    "lamp",
+    [
+        PointLamp("odd", NOWHERE, 0.1, WHITE),
+        PointLamp("odd", UP, np.nan, WHITE),
+        PointLamp("odd", 1e30 * UP, 0.1, WHITE),
+        AreaLamp("odd", UP, np.full((2, 3), np.inf), -UP, WHITE),
+        AreaLamp("odd", UP, np.eye(3)[:2], 0.0 * UP, WHITE),
+        SunLamp("odd", NOWHERE, 0.1, WHITE),
+        PointLamp("odd", UP, 0.1, np.nan * WHITE),
+    ],
+    ids=["nowhere", "no radius", "too far", "endless", "no normal", "no direction", "no power"],
+)
+def test_a_lamp_that_is_no_lamp_is_named_and_leaves_the_light_of_others(lamp):
+    alone, beside = (bake(Scene((FLOOR,), WHITE, lamps), COARSE) for lamps in ((), (lamp,)))
+    # Other receivers get other rays where there are lamps at all: the floor sees the whole sky by each of them.
+    assert beside.meshes[0].irradiance == pytest.approx(alone.meshes[0].irradiance, rel=1e-6)
+    assert any(warning.startswith("odd: ") for warning in beside.report["warnings"])
+
+
+@pytest.mark.parametrize("far", [1e13, 1e30, 1e200, np.inf])
+def test_a_vertex_too_far_away_takes_its_own_face_along_and_no_other(far):
+    broken = surface_mesh("broken", [(0, 0, 1), (1, 0, 1), (0, far, 1)], [(0, 1, 2)])
+    result = bake(Scene((FLOOR, broken), WHITE), COARSE)
+    assert len(np.unique(result.meshes[0].parent_triangle)) == 2
+    assert any(warning.startswith("broken: 1 triangles with coordinates") for warning in result.report["warnings"])
+
+
+def test_what_is_too_large_for_the_rest_of_the_scene_is_named_where_nothing_is_left():
+    vast = exact.rectangle("vast", (-1e11, -1e11, -5), (2e11, 0, 0), (0, 2e11, 0))
+    hidden = surface_mesh(vast.name, vast.vertices, vast.triangles, baked=False)
+    with pytest.raises(NothingToBakeError, match='too small beside "vast"'):
+        bake(Scene((FLOOR, hidden), WHITE), COARSE)
+
+
+def test_slivers_are_not_halved_without_end(monkeypatch):
+    monkeypatch.setattr("radiosity_bake.core.patches.MOST_PIECES", 1000)
+    sliver = surface_mesh("sliver", [(0, 0, 0), (1e4, 0, 0), (1e4, 1e-3, 0)], [(0, 1, 2)])
+    tree = coarse_patches(join(Scene((sliver,), DARK)), 1e-6)
+    # Three pieces are half as long, and the last halving may leave them up to half as long as they could be.
+    assert 300 < len(tree.leaves()) <= 3 * 1008
