@@ -128,7 +128,7 @@ def _all_lights(tree: LightTree, places: _Places) -> Cut:
     centre = (tree.centre[:, node] - middle[:, None]).astype(np.float32)
     radius, flux, *vector = tree.sums[:5, node]
     facing = at @ np.stack(vector) - (centre * vector).sum(axis=0)
-    facing -= GRAZING * flux * np.float32(np.linalg.norm(centre, axis=0).max())
+    facing -= GRAZING * flux * np.float32(np.linalg.norm(centre, axis=0).max(initial=0.0))
     height = normals @ centre - np.einsum("nx,nx->n", normals, at)[:, None]
     square = at @ (-2.0 * centre)
     square += (at * at).sum(axis=1)[:, None]
