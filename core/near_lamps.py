@@ -37,7 +37,7 @@ def near_shares(lamps: tuple[Lamp, ...], corners: Floats, points: Floats, normal
             continue
         near = np.flatnonzero(_is_near(lamp, corners))
         sampled = unoccluded(lamp, points[near].reshape(-1, 3), normals[near].reshape(-1, 3))
-        sampled = sampled.reshape(len(near), -1).mean(axis=1)
+        sampled = sampled.reshape(len(near), points.shape[1]).mean(axis=1)
         lit = sampled > 0.0
         if lit.any():
             shares = np.ones(len(points))
