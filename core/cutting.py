@@ -509,11 +509,6 @@ def cut_faces(
     six = np.concatenate([faces.corners, on_face.point], axis=1)
     member, piece = templates.cut(faces.points, six, on_face.point >= 0)
     row = member[:, None]
-
-    def interpolated(at_corners: Floats, share: Floats) -> Floats:
-        t = share[..., None]
-        return np.concatenate([at_corners, at_corners * (1.0 - t) + np.roll(at_corners, -1, axis=1) * t], axis=1)
-
     unseen = hidden[of_corner]
     own, start = _divided(of_corner, cuts, on_face.own, unseen)
     # A piece lies on the side of the corners it has. One between three cuts has none: two of these are on the edges of
@@ -522,26 +517,49 @@ def cut_faces(
     piece_hidden: NDArray[np.bool_] = np.any(own_corner & unseen[row, np.minimum(piece, 2)], axis=1)
     without = ~own_corner.any(axis=1)
     piece_hidden[without] = unseen[member[without]].sum(axis=1) >= 2
-    front = interpolated(values[:count], on_face.share)
-    new_front = front[row, piece]
+    row_of_back = np.full(count, -1, dtype=np.int64)
+    row_of_back[face[count:]] = np.arange(count, len(face))
+    with_back = np.flatnonzero(row_of_back[member] >= 0)
+    side = np.concatenate([np.arange(len(member)), with_back])
+    rows = np.concatenate([member, row_of_back[member[with_back]]])
+    new_values = _at_corners_of_pieces(values, rows, on_face.share, member[side], piece[side])
     at, vertex = np.nonzero(~own_corner & (own[row, piece - 3] >= 0))
     edge = piece[at, vertex] - 3
     cut, of_start = own[member[at], edge], unseen[member[at], start[member[at], edge]] == piece_hidden[at]
-    new_front[at, vertex] = np.where(of_start[:, None], seen_value[cut], hidden_value[cut])
-    behind = face[count:]
-    back = interpolated(values[count:], on_face.share[behind])
-    number = np.full(count, -1, dtype=np.int64)
-    number[behind] = np.arange(len(behind))
-    with_back = np.flatnonzero(number[member] >= 0)
-    new_back = back[number[member[with_back]][:, None], piece[with_back]]
-    weights = interpolated(faces.weights, on_face.share)
+    new_values[at, vertex] = np.where(of_start[:, None], seen_value[cut], hidden_value[cut])
+    weights = _at_corners_of_pieces(faces.weights, member, on_face.share, member, piece)
     new = Faces(
         faces.points,
         faces.places,
         faces.mesh_of_point,
         six[row, piece],
         faces.triangle[member],
-        weights[row, piece],
+        weights,
         faces.node[member],
     )
-    return new, np.concatenate([np.arange(len(member)), with_back]), np.concatenate([new_front, new_back])
+    return new, side, new_values
+
+
+def _at_corners_of_pieces(values: Floats, row: Ints, share: Floats, member: Ints, piece: Ints) -> Floats:
+    """Values at the corners of pieces of faces, in a straight line between the faces' own, (g, 3, 3).
+
+    Parameters
+    ----------
+    values : (n, 3, 3) float
+        At the corners of faces.
+    row : (g,) int
+        Those of each piece.
+    share : (f, 3) float
+        Where the edges of the faces are cut, from their first corners.
+    member : (g,) int
+        The face of each piece.
+    piece : (g, 3) int
+        As of `templates.cut`.
+    """
+    result: Floats = values[row[:, None], np.minimum(piece, 2)]
+    # Of a dense mesh few corners lie on cuts.
+    at, vertex = np.nonzero(piece >= 3)
+    first = piece[at, vertex] - 3
+    t = share[member[at], first][:, None]
+    result[at, vertex] = values[row[at], first] * (1.0 - t) + values[row[at], (first + 1) % 3] * t
+    return result

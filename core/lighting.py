@@ -203,6 +203,8 @@ def result_of(
     parts_of : callable
         Gives the light that was asked for and its groups, of all the light at the corners of the faces.
     """
+    # Before the meshes are there, as it takes much memory of its own.
+    error = shown.error(surfaces)
     faces, face, irradiance = cut_light(shown, cuts)
     output = story.settings.output
 
@@ -213,7 +215,6 @@ def result_of(
     asked, groups = parts_of(irradiance) if wants_parts(story.settings) else (Part("", scene, irradiance), [])
     meshes, warnings = meshes_of(asked)
     meshes = with_groups(meshes, [(group.name, meshes_of(group)[0]) for group in groups])
-    error = shown.error(surfaces)
     from_lamps, from_suns = (patches.direct.irradiance(patches.emitters.lamps_alone(suns)) for suns in (False, True))
     from_linked = patches.direct.irradiance(patches.emitters.linked_alone())
     balance = energy(patches.balance, solution, from_lamps, from_suns, from_linked, surfaces)
@@ -247,7 +248,6 @@ def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]
     if cuts is None:
         return shown.faces, shown.face, shown.corner_irradiance()
     count, gathered, edges = len(shown.faces.triangle), shown.gathered, cuts.edges
-    fronts = gathered.irradiance[shown.places.of_corner[:count]]
     start, end = edges.seen, edges.hidden
     seen = drawn_to_cut(gathered.irradiance[start], cuts.seen.irradiance, edges.change, gathered.touching[start])
     beyond = drawn_to_cut(gathered.irradiance[end], cuts.hidden.irradiance, edges.beyond, gathered.touching[end])
@@ -256,8 +256,9 @@ def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]
     corner, light = values_on_outlines(
         shown.places.of_corner[:count], edges.taken(whole), seen[whole], ~cuts.seen.hidden[whole]
     )
-    fronts.reshape(-1, 3)[corner] = light
-    values = np.concatenate([fronts, shown.corner_irradiance()[count:]])
+    values = shown.corner_irradiance()
+    values[:count] = gathered.irradiance[shown.places.of_corner[:count]]
+    values.reshape(-1, 3)[corner] = light
     cut = np.flatnonzero(~edges.whole)
     sides = seen[cut], beyond[cut]
     return cut_faces(shown.faces, shown.face, shown.places, gathered.hidden, edges.taken(cut), values, *sides)

@@ -4,15 +4,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .geometry import triangle_areas
 from .result import BakedMesh
-from .scene import Floats, Ints, Scene
+from .scene import Floats, Ints, Scene, Texture
 from .subdivision import Faces
 from .surfaces import Surfaces
 from .textures import corner_colours
+
+FACES_AT_ONCE = 2**16
+"""Faces that are sorted back together: of a dense mesh, what is made of all at once on the way would be several times
+what is handed back."""
 
 
 def baked_meshes(
@@ -35,12 +42,8 @@ def baked_meshes(
     irradiance : (f, 3, 3) float, W m^-2 sr^-1
         At their corners.
     """
-    count = len(faces.triangle)
-    front = irradiance[:count]
-    back, has_back = np.zeros_like(front), np.zeros(count, dtype=bool)
-    back[face[count:]], has_back[face[count:]] = irradiance[count:], True
+    light = _SideLight.of(len(faces.triangle), face, irradiance)
     turned = (~lit[:, 0] & lit[:, 1])[surfaces.shell_of_triangle[faces.triangle]]
-    reflectance, emission = _colours_at_corners(surfaces, faces)
     warnings, meshes = [], []
     mesh_of_face = surfaces.mesh_of_triangle[faces.triangle]
     for number, mesh in enumerate(scene.meshes):
@@ -52,47 +55,82 @@ def baked_meshes(
                 f"{mesh.name}: light reaches only the back of its faces; "
                 + ("the refined mesh is turned over" if output == "REFINED" else "flip its normals to see it lit")
             )
-        behind = back[chosen] if has_back[chosen].any() else None
         if output == "ORIGINAL":
-            colours = reflectance[chosen], emission[chosen]
-            meshes.append(_original(scene, surfaces, faces, number, chosen, front[chosen], behind, *colours))
+            meshes.append(_original(scene, surfaces, faces, number, chosen, light))
         else:
-            values = front[chosen], behind, turned[chosen], reflectance, emission
-            meshes.append(_refined(surfaces, faces, number, chosen, *values))
+            meshes.append(_refined(surfaces, faces, number, chosen, light, turned))
     return tuple(meshes), warnings
 
 
-def _colours_at_corners(surfaces: Surfaces, faces: Faces) -> tuple[Floats, Floats]:
-    """Reflectance and emission at the corners of faces, (f, 3, 3) each."""
-    where = faces.corners, faces.triangle, faces.weights
-    areas = triangle_areas(faces.points[faces.corners])
+@dataclass(frozen=True, eq=False)
+class _SideLight:
+    """Irradiance at the corners of face sides, found by their faces.
+
+    Attributes
+    ----------
+    irradiance : (f, 3, 3) float, W m^-2 sr^-1
+        All fronts in order, then some backs.
+    row_of_back : (faces,) int
+        -1 for a face whose back has no values.
+    """
+
+    irradiance: Floats
+    row_of_back: Ints
+
+    @staticmethod
+    def of(faces: int, face: Ints, irradiance: Floats) -> _SideLight:
+        row_of_back = np.full(faces, -1, dtype=np.int64)
+        row_of_back[face[faces:]] = np.arange(faces, len(face))
+        return _SideLight(irradiance, row_of_back)
+
+    def fronts(self, chosen: Ints) -> Floats:
+        """Of the fronts of some faces (n,), (n, 3, 3)."""
+        return self.irradiance[chosen]
+
+    def have_backs(self, chosen: Ints) -> bool:
+        """Whether the back of any of these faces has values."""
+        return bool((self.row_of_back[chosen] >= 0).any())
+
+    def backs(self, chosen: Ints) -> Floats:
+        """Of the backs of some faces, (n, 3, 3), black where they have none."""
+        row = self.row_of_back[chosen]
+        values = self.irradiance[row]
+        values[row < 0] = 0.0
+        return values
+
+
+def _colours_at_corners(surfaces: Surfaces, faces: Faces, chosen: Ints) -> tuple[Floats, Floats]:
+    """Reflectance and emission at the corners of all faces of a mesh, (f, 3, 3) each; not to be written to."""
+    triangle = faces.triangle[chosen]
+
+    def of_corners(colours: Floats, texture: Texture | None) -> Floats:
+        if texture is None:
+            return np.broadcast_to(colours[triangle, None], (len(chosen), 3, 3))
+        corners = faces.corners[chosen]
+        areas = triangle_areas(faces.points[corners])
+        return corner_colours(colours, texture, corners, triangle, faces.weights[chosen], areas)
+
     return (
-        corner_colours(surfaces.reflectance, surfaces.reflectance_texture, *where, areas),
-        corner_colours(surfaces.emission, surfaces.emission_texture, *where, areas),
+        of_corners(surfaces.reflectance, surfaces.reflectance_texture),
+        of_corners(surfaces.emission, surfaces.emission_texture),
     )
 
 
 def _original(
-    scene: Scene,
-    surfaces: Surfaces,
-    faces: Faces,
-    number: int,
-    chosen: Ints,
-    front: Floats,
-    back: Floats | None,
-    reflectance: Floats,
-    emission: Floats,
+    scene: Scene, surfaces: Surfaces, faces: Faces, number: int, chosen: Ints, light: _SideLight
 ) -> BakedMesh:
     """Values at the corners of the input's triangles, in their order; triangles that were left out stay black."""
     mesh = scene.meshes[number]
     place = surfaces.input_triangle[faces.triangle[chosen]]
     count = len(mesh.triangles)
+    reflectance, emission = _colours_at_corners(surfaces, faces, chosen)
 
     def spread(values: Floats) -> Floats:
         full = np.zeros((count, 3, 3))
         full[place] = values
         return full
 
+    front, back = light.fronts(chosen), light.backs(chosen) if light.have_backs(chosen) else None
     irradiance, radiosity = spread(front), spread(emission + reflectance * front)
     behind = None if back is None else spread(back)
     emission_behind = np.where(surfaces.front_only[faces.triangle[chosen], None, None], 0.0, emission)
@@ -111,71 +149,60 @@ def _original(
     )
 
 
-def _without_collapsed(
-    faces: Faces, chosen: Ints, front: Floats, back: Floats | None, turned: NDArray[np.bool_]
-) -> tuple[Ints, Floats, Floats | None, NDArray[np.bool_]]:
-    """Leave out faces that have a corner twice; Blender crashes when it computes normals of such."""
-    a, b, c = faces.corners[chosen].T
-    sound = (a != b) & (b != c) & (c != a)
-    return chosen[sound], front[sound], None if back is None else back[sound], turned[sound]
-
-
 def _refined(
-    surfaces: Surfaces,
-    faces: Faces,
-    number: int,
-    chosen: Ints,
-    front: Floats,
-    back: Floats | None,
-    turned: NDArray[np.bool_],
-    reflectance: Floats,
-    emission: Floats,
+    surfaces: Surfaces, faces: Faces, number: int, chosen: Ints, light: _SideLight, turned: NDArray[np.bool_]
 ) -> BakedMesh:
     """The conforming subdivision of one mesh, shells that are lit from behind turned over.
 
     Parameters
     ----------
     chosen : (f,) int
-        Its faces, which all but the colours are of.
-    reflectance, emission : (faces, 3, 3) float
-        At the corners of all faces.
+        Its faces.
+    turned : (faces,) bool
+        Faces that are lit from behind.
     """
-    chosen, front, back, turned = _without_collapsed(faces, chosen, front, back, turned)
-    reflectance, emission = reflectance[chosen], emission[chosen]
-    emission_behind = np.where(surfaces.front_only[faces.triangle[chosen], None, None], 0.0, emission)
-    emission, emission_behind = (
-        np.where(turned[:, None, None], own, other)
-        for own, other in ((emission_behind, emission), (emission, emission_behind))
-    )
-    first, last = surfaces.first_point_of_mesh[number : number + 2]
+    has_backs = light.have_backs(chosen)
+    reflectance, emission = _colours_at_corners(surfaces, faces, chosen)
+    # Blender crashes when it computes normals of faces that have a corner twice.
+    a, b, c = faces.corners[chosen].T
+    sound = np.flatnonzero((a != b) & (b != c) & (c != a))
+    chosen = chosen[sound]
+    first_point, last_point = surfaces.first_point_of_mesh[number : number + 2]
     made = np.flatnonzero(faces.mesh_of_point == number)
     made = np.intersect1d(made[made >= surfaces.first_point_of_mesh[-1]], faces.corners[chosen])
     index = np.full(len(faces.points), -1, dtype=np.int64)
-    kept = np.concatenate([np.arange(first, last), made])
+    kept = np.concatenate([np.arange(first_point, last_point), made])
     index[kept] = np.arange(len(kept))
-    triangle = faces.triangle[chosen]
-    normals = faces.corner_normals(surfaces)[chosen]
-    irradiance, behind = front, back
-    if back is not None and turned.any():
-        irradiance = np.where(turned[:, None, None], back, front)
-        behind = np.where(turned[:, None, None], front, back)
-        normals = np.where(turned[:, None, None], -normals, normals)
-    if behind is not None and not behind.any():
-        behind = None
-    order = np.where(turned[:, None], [0, 2, 1], [0, 1, 2])
-
-    def ordered(values: Floats) -> Floats:
-        return np.take_along_axis(values, order[:, :, None], axis=1)
-
+    triangles = np.empty((len(chosen), 3), dtype=np.int64)
+    names = ["barycentric", "corner_normals", "radiosity", "irradiance"]
+    names += ["radiosity_back", "irradiance_back"] if has_backs else []
+    values: dict[str, Any] = {name: np.empty((len(chosen), 3, 3)) for name in names}
+    for first in range(0, len(chosen), FACES_AT_ONCE):
+        part = slice(first, first + FACES_AT_ONCE)
+        some, pale, bright = chosen[part], reflectance[sound[part]], emission[sound[part]]
+        over = turned[some]
+        order = np.where(over[:, None], [0, 2, 1], [0, 1, 2])
+        triangles[part] = index[np.take_along_axis(faces.corners[some], order, axis=1)]
+        over = over[:, None, None]
+        bright_behind = np.where(surfaces.front_only[faces.triangle[some], None, None], 0.0, bright)
+        irradiance, normals = light.fronts(some), faces.taken(some).corner_normals(surfaces)
+        found = {"barycentric": faces.weights[some]}
+        if has_backs:
+            back = light.backs(some)
+            irradiance, behind = np.where(over, back, irradiance), np.where(over, irradiance, back)
+            normals = np.where(over, -normals, normals)
+            found["irradiance_back"] = behind
+            found["radiosity_back"] = np.where(over, bright, bright_behind) + pale * behind
+        found["corner_normals"], found["irradiance"] = normals, irradiance
+        found["radiosity"] = np.where(over, bright_behind, bright) + pale * irradiance
+        for name in names:
+            values[name][part] = np.take_along_axis(found[name], order[:, :, None], axis=1)
+    if has_backs and not values["irradiance_back"].any():
+        del values["irradiance_back"], values["radiosity_back"]
     return BakedMesh(
         mesh=number,
         vertices=faces.points[kept],
-        triangles=index[np.take_along_axis(faces.corners[chosen], order, axis=1)],
-        parent_triangle=surfaces.input_triangle[triangle],
-        barycentric=ordered(faces.weights[chosen]),
-        corner_normals=ordered(normals),
-        radiosity=ordered(emission + reflectance * irradiance),
-        irradiance=ordered(irradiance),
-        radiosity_back=None if behind is None else ordered(emission_behind + reflectance * behind),
-        irradiance_back=None if behind is None else ordered(behind),
+        triangles=triangles,
+        parent_triangle=surfaces.input_triangle[faces.triangle[chosen]],
+        **values,
     )

@@ -119,7 +119,7 @@ def _cell_at(along: Ints, u: Floats, v: Floats) -> Ints:
 
 
 def corner_colours(
-    means: Floats, texture: Texture | None, vertices: Ints, triangle: Ints, corners: Floats, areas: Floats
+    means: Floats, texture: Texture, vertices: Ints, triangle: Ints, corners: Floats, areas: Floats
 ) -> Floats:
     """Colours at the corners of faces, (f, 3, 3), filtered to the size of the faces around each vertex.
 
@@ -135,8 +135,6 @@ def corner_colours(
     areas : (f,) float
     """
     result = np.repeat(means[triangle][:, None], 3, axis=1)
-    if texture is None:
-        return result
     part_of_triangle = np.full(len(means), -1, dtype=np.int64)
     part_of_triangle[texture.triangle] = texture.part
     chosen = np.flatnonzero(part_of_triangle[triangle] >= 0)
