@@ -25,7 +25,7 @@ class LocalMesh:
     triangles, corners : (t, 3) int
         Vertices and face corners of the mesh ("loops") at the corners of each triangle.
     normals : (t, 3, 3) float, unit
-        Shading normals at the corners of each triangle.
+        Shading normals at the corners of each triangle, in single precision as Blender has them.
     slots : (t,) int
         Material index of each triangle.
     vertex_of_corner : (c,) int
@@ -62,7 +62,7 @@ def local_mesh(mesh: bpy.types.Mesh) -> LocalMesh:
         vertices=vertices.astype(np.float64),
         triangles=triangles.astype(np.int64),
         corners=corners.astype(np.int64),
-        normals=normals[corners].astype(np.float64),
+        normals=normals[corners],
         slots=slots.astype(np.int64),
         vertex_of_corner=vertex_of_corner.astype(np.int64),
         materials=tuple(mesh.materials),

@@ -50,7 +50,7 @@ def _look_up(points: Floats, normals: Floats, mesh: LocalMesh) -> tuple[Ints, Fl
     """Return the triangle (n,) nearest to each point on the side of its normal, and barycentric weights (n, 3)."""
     tree = BVHTree.FromPolygons(mesh.vertices.tolist(), mesh.triangles.tolist(), all_triangles=True)
     some_way = _SOME_WAY * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    facing = mesh.normals.mean(axis=1)
+    facing = mesh.normals.mean(axis=1, dtype=np.float64)
     triangle = np.empty(len(points), dtype=np.int64)
     location = np.empty((len(points), 3))
     for index, (point, normal) in enumerate(zip(points.tolist(), normals, strict=True)):
