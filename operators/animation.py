@@ -35,7 +35,7 @@ from .bake import (
     way_to_object_mode,
 )
 from .extraction import Extraction, extract
-from .files import check_writable, replaced
+from .files import check_writable, is_whole_blend, replaced
 from .in_place import values_in_place
 from .job import Bake, BakeJob, Failed
 from .journal import Journal
@@ -210,6 +210,8 @@ class FrameRange:
                 bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
             except RuntimeError as error:
                 raise FrameError(f"{path} could not be written: {error}") from error
+            if not is_whole_blend(temporary):
+                raise FrameError(f"{path} could not be written to its end; look whether the disk is full")
 
     def finish(self) -> dict[str, Any]:
         """Store what was taken, and return the report: that of the frame which is shown, and a line for each."""

@@ -16,7 +16,7 @@ from ..core.progress import Progress
 from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
 from .animation import FRAME_OUTPUTS, bake_frames, file_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
-from .files import check_writable, replaced
+from .files import check_writable, is_whole_blend, replaced
 from .participants import is_stamp, rendered_objects
 from .record import source_of
 from .settings import bake_settings, keep_settings
@@ -280,6 +280,8 @@ def _save(temporary: Path, output: Path) -> None:
         raise CommandError(
             f"{output} could not be written ({_sentence(error)}); look whether the disk is full"
         ) from error
+    if not is_whole_blend(temporary):
+        raise CommandError(f"{output} could not be written to its end; look whether the disk is full")
 
 
 def _sentence(error: RuntimeError) -> str:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that appear whole or not at all: written under a temporary name in their folder, then renamed."""
 
+import os
 import secrets
 import stat
 from collections.abc import Iterator
@@ -9,6 +10,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..core.errors import BakeError
+
+_ZSTANDARD, _END_OF_SEEKABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
+"""How a compressed .blend file begins and ends: frames of Zstandard and a table of them."""
+_END_OF_BLEND = b"ENDB"
+"""Name of the last block of one that is not compressed, which has but a header."""
+_TAIL = 64
 
 
 class FileError(BakeError):
@@ -56,6 +63,18 @@ def replaced(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+def is_whole_blend(path: Path) -> bool:
+    """Return whether Blender wrote a .blend file to its end.
+
+    Blender 5.2 says that it saved a file of which the last part did not fit on the disk.
+    """
+    with path.open("rb") as file:
+        start = file.read(4)
+        file.seek(-min(_TAIL, path.stat().st_size), os.SEEK_END)
+        end = file.read()
+    return end.endswith(_END_OF_SEEKABLE) if start == _ZSTANDARD else _END_OF_BLEND in end
 
 
 def _temporary(path: Path) -> Path:

@@ -3,6 +3,7 @@
 """Every test starts in an empty file of factory settings, with the extension registered once for the session."""
 
 import importlib.util
+import os
 import sys
 
 import pytest
@@ -12,6 +13,19 @@ if "bpy" not in sys.modules and importlib.util.find_spec("bpy") is None:
 else:
     import bpy
     import radiosity_bake
+
+    ended = pytest.StashKey[int]()
+
+    def pytest_sessionfinish(session, exitstatus):
+        session.config.stash[ended] = int(exitstatus)
+
+    def pytest_unconfigure(config):
+        # When Python takes the module of Blender 4.2 down at its end, that may crash, though only pytest was imported
+        # and no test was run: it depends on what else there is to free.
+        if not bpy.app.binary_path and ended in config.stash:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(config.stash[ended])
 
     @pytest.fixture(scope="session", autouse=True)
     def registered():

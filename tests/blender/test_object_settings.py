@@ -171,6 +171,11 @@ def test_settings_are_kept_in_the_file(tmp_path):
     assert not (settings.emits or settings.receives or settings.casts)
 
 
+@pytest.mark.xfail(
+    bpy.app.version >= (5, 0, 0),
+    reason="Blender 5.2 does not read the settings of an override back: they have to be set again",
+    strict=True,
+)
 def test_settings_of_an_override_are_kept_in_the_file(tmp_path):
     add_cube("Linked")
     cube = linked_from_library(tmp_path, "objects", "Linked").override_create()
