@@ -70,7 +70,7 @@ def test_the_render_result_of_the_scene_stays(tmp_path):
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.collection.objects.link(camera)
     scene.camera = camera
-    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.engine, scene.cycles.samples, scene.cycles.use_denoising = "CYCLES", 1, False
     scene.render.resolution_x = scene.render.resolution_y = 8
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.world = bpy.data.worlds.new("Sky")
