@@ -4,6 +4,7 @@
 
 import json
 import textwrap
+from collections.abc import Sequence
 
 import bpy
 
@@ -63,15 +64,7 @@ class VIEW3D_PT_radiosity_sampling(_InSidebar, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        layout.active = RADIOSITY_OT_bake.job is None
-        settings = context.scene.radiosity
-        layout.prop(settings, "seed")
-        layout.prop(settings, "threads")
-        layout.prop(settings, "memory_limit")
-        layout.prop(settings, "keep_transport")
+        _draw_settings(self.layout, context, ("seed", "threads", "memory_limit", "keep_transport"))
 
 
 class VIEW3D_PT_radiosity_output(_InSidebar, bpy.types.Panel):
@@ -83,19 +76,9 @@ class VIEW3D_PT_radiosity_output(_InSidebar, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        layout.active = RADIOSITY_OT_bake.job is None
-        settings = context.scene.radiosity
-        layout.prop(settings, "material")
-        layout.prop(settings, "light")
-        layout.prop(settings, "light_groups")
-        layout.prop(settings, "domain")
-        layout.prop(settings, "data_type")
-        if settings.data_type == "BYTE":
-            layout.prop(settings, "byte_maximum")
-        layout.prop(settings, "prefix")
+        maximum = ("byte_maximum",) if context.scene.radiosity.data_type == "BYTE" else ()
+        names = ("material", "light", "light_groups", "domain", "data_type", *maximum, "prefix")
+        _draw_settings(self.layout, context, names)
 
 
 class VIEW3D_PT_radiosity_result(_InSidebar, bpy.types.Panel):
@@ -139,6 +122,15 @@ def _rows(report: dict) -> list[tuple[str, str]]:
         accounted_for = 1.0 - abs(report["energy"]["imbalance"])
         rows.append(("Energy Balance", f"{max(accounted_for, 0.0):.1%}"))
     return rows
+
+
+def _draw_settings(layout, context, names: Sequence[str]) -> None:
+    """Draw settings of the scene below each other, greyed while a bake runs."""
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    layout.active = RADIOSITY_OT_bake.job is None
+    for name in names:
+        layout.prop(context.scene.radiosity, name)
 
 
 def _draw_progress(layout, progress) -> None:
