@@ -4,6 +4,7 @@
 
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -32,24 +33,32 @@ def room(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.fixture
-def full_disk(room):
-    """Let no file grow beyond a limit, as a full disk does; the signal that says so is ignored by Python."""
+@contextmanager
+def full_disk():
+    """Let no file grow beyond a limit, as a full disk does; the signal that says so is ignored by Python.
+
+    Not a fixture: between a test and the end of its fixtures pytest writes how the test went, and its own output may be
+    a file that is longer than the limit.
+    """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST_FILE, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-@pytest.mark.usefixtures("quick_bake", "full_disk")
+@pytest.mark.usefixtures("quick_bake")
 @pytest.mark.parametrize("output", ["baked.blend", "new.blend", "room.blend"])
 def test_a_disk_that_is_full_while_the_output_is_saved_leaves_every_file_as_it_was(room, capsys, output):
     before = contents(room)
-    assert main(["--output", output, "--overwrite", "--report", "room.json"]) == 1
+    with full_disk():
+        code = main(["--output", output, "--overwrite", "--report", "room.json"])
+    assert code == 1
     (line,) = capsys.readouterr().err.strip().splitlines()[-1:]
     assert f"{output} could not be written" in line and "disk is full" in line
     assert contents(room) == before
