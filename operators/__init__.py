@@ -4,7 +4,7 @@
 
 import bpy
 
-from . import animation, bake, command, object_settings, record, relight, restore, settings, transports
+from . import animation, bake, command, doors, object_settings, record, relight, restore, settings, transports
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
@@ -14,7 +14,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         record.ObjectRecord,
         object_settings.ObjectSettings,
         bake.RADIOSITY_OT_bake,
-        bake.RADIOSITY_OT_cancel,
+        doors.RADIOSITY_OT_cancel,
         animation.RADIOSITY_OT_bake_frames,
         relight.RADIOSITY_OT_relight,
         restore.RADIOSITY_OT_restore,
@@ -35,8 +35,8 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Unregister in reverse; a bake that still runs is asked to stop."""
-    bake.stop_running_job()
+    """Unregister in reverse; a bake that still runs is ended."""
+    doors.stop_running_bake()
     command.unregister()
     transports.unregister()
     del bpy.types.Object.radiosity_settings

@@ -9,7 +9,7 @@ frame in a file of its own. The scene goes back to the frame where it was.
 import json
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -17,33 +17,25 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..core.errors import BakeError, Cancelled
+from ..core.errors import BakeError
 from ..core.progress import Progress, ProgressCallback, no_progress
 from ..core.relight import ChangedSceneError, KeptTransport, NotKept, relight
 from ..core.result import BakeResult
 from ..core.scene import Floats, Scene
 from ..core.settings import BakeSettings
 from .attributes import Attributes, attributes_of, attributes_to_be
-from .bake import (
-    POLL_SECONDS,
-    RADIOSITY_OT_bake,
-    counted,
-    reason_not_to_bake,
-    redraw_panels,
-    shown_report,
-    trace,
-    way_to_object_mode,
-)
+from .bake import counted, reason_not_to_bake, shown_report, trace
+from .doors import TwoDoors, run_to_end
 from .extraction import Extraction, extract
 from .files import check_writable, is_whole_blend, replaced
 from .in_place import values_in_place
-from .job import Bake, BakeJob, Failed
+from .job import Bake
 from .journal import Journal
 from .record import source_of
 from .refined import values_of_corners
 from .sets import add_sets
 from .settings import bake_settings
-from .store import check_storable, scene_of, store
+from .store import ChangedMeanwhileError, check_storable, check_unchanged, scene_of, store, view_layer_of
 from .targets import baked_targets
 from .transports import remember
 
@@ -87,10 +79,13 @@ class LitFrame:
 
 
 class FrameRange:
-    """The bake of some frames, one step at a time: `begin`, then the light in whatever thread, then `take`.
+    """The bake of some frames: a task of a step for each.
 
-    `finish` stores what was taken. `leave`, in any case, goes back to the frame where the scene was.
+    `leave`, in any case, goes back to the frame where the scene was.
     """
+
+    purpose = "go on with the frames"
+    cancelled = "Bake of the frames cancelled"
 
     def __init__(
         self,
@@ -111,8 +106,9 @@ class FrameRange:
         """
         if not len(frames):
             raise FrameError("The range of frames is empty: its last frame comes before its first")
-        self._context = context
-        self._uids = [source_of(obj).session_uid for obj in objects]
+        # The window may show another scene, or none, by the time of a later frame; pointers do not survive an undo.
+        self._scene_uid, self._view_layer = context.scene.session_uid, context.view_layer.name
+        self._names = {source_of(obj).session_uid: source_of(obj).name for obj in objects}
         self._settings = settings
         self._frames = frames
         self._files = files
@@ -143,15 +139,24 @@ class FrameRange:
         """
         began = time.perf_counter()
         frame = self._frames[self._next]
-        self._context.scene.frame_set(frame)
-        by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
-        objects = [by_uid[uid] for uid in self._uids if uid in by_uid]
         with named(frame):
-            extraction = extract(self._context, objects, self._settings.output)
+            scene = scene_of(self._scene_uid)
+            view_layer = view_layer_of(scene, self._view_layer)
+            scene.frame_set(frame)
+            objects = self._objects()
+            with bpy.context.temp_override(scene=scene, view_layer=view_layer):
+                extraction = extract(bpy.context, objects, self._settings.output)
             check_storable(extraction, attributes_to_be(self._settings, extraction.scene))
         self._frame = extraction, time.perf_counter() - began
         settings = replace(self._settings, keep_transport=True)
         return extraction.scene, settings, _light(self._kept, frame, self._next, len(self._frames))
+
+    def _objects(self) -> list[bpy.types.Object]:
+        by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
+        for uid, name in self._names.items():
+            if uid not in by_uid:
+                raise ChangedMeanwhileError(f'"{name}" was deleted during the bake; nothing more was stored')
+        return [by_uid[uid] for uid in self._names]
 
     def take(self, result: BakeResult) -> None:
         """Keep the light of the frame that was begun.
@@ -189,6 +194,8 @@ class FrameRange:
 
     def _keep_colours(self, lit: LitFrame) -> None:
         """Keep the colours alone: whole results of many frames would take gigabytes."""
+        with named(lit.frame):
+            check_unchanged(lit.extraction)
         by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
         attributes = self._attributes_of_sets(lit)
         for target, baked in baked_targets(lit.extraction.scene, lit.extraction.targets, lit.result, self._settings):
@@ -196,7 +203,13 @@ class FrameRange:
                 values = values_of_corners(target, baked, attributes)
             else:
                 values = values_in_place(by_uid[target.uid].data, target, baked, attributes)
-            self._sets.setdefault(target.uid, {})[lit.frame] = _single(values)
+            sets = self._sets.setdefault(target.uid, {})
+            sets[lit.frame] = _single(values)
+            if len({len(part) for values_of_frame in sets.values() for part in values_of_frame.values()}) > 1:
+                raise FrameError(
+                    f'Frame {lit.frame}: the mesh of "{target.name}" has other faces than in the frame before; '
+                    "nothing was stored"
+                )
 
     def _attributes_of_sets(self, lit: LitFrame) -> Attributes:
         # Bytes of another exposure for each frame could not be compared.
@@ -216,13 +229,13 @@ class FrameRange:
     def finish(self) -> dict[str, Any]:
         """Store what was taken, and return the report: that of the frame which is shown, and a line for each."""
         lit = self._shown
-        self._context.scene.frame_set(lit.frame)
+        scene_of(self._scene_uid).frame_set(lit.frame)
         # With one file a frame, the last of them is what the scene shows until here.
         return self._store(lit)
 
     def _store(self, lit: LitFrame) -> dict[str, Any]:
         began = time.perf_counter()
-        scene = scene_of(lit.extraction)
+        scene = scene_of(lit.extraction.scene_uid)
 
         def beside(obj: bpy.types.Object, uid: int, journal: Journal) -> None:
             add_sets(obj, self._sets.get(uid, {}), self._attributes_of_sets(lit), journal)
@@ -238,9 +251,14 @@ class FrameRange:
         return report
 
     def leave(self) -> None:
-        """Go back to the frame where the scene was."""
+        """Go back to the frame where the scene was, unless it was deleted."""
         frame, part = self._before
-        self._context.scene.frame_set(frame, subframe=part)
+        with suppress(ChangedMeanwhileError):
+            scene_of(self._scene_uid).frame_set(frame, subframe=part)
+
+    def summary(self, report: dict[str, Any]) -> str:
+        """Return one sentence about the frames."""
+        return summary_of(report)
 
 
 @contextmanager
@@ -274,14 +292,7 @@ def bake_frames(
     Cancelled
         When `progress` raised it, likewise.
     """
-    frame_range = FrameRange(context, objects, settings, frames, files)
-    try:
-        while not frame_range.done:
-            scene, of_frame, light = frame_range.begin()
-            frame_range.take(light(scene, of_frame, progress))
-        return frame_range.finish()
-    finally:
-        frame_range.leave()
+    return run_to_end(FrameRange(context, objects, settings, frames, files), progress)
 
 
 def _light(kept: KeptTransport | NotKept | None, frame: int, number: int, count: int) -> Bake:
@@ -325,8 +336,8 @@ def files_of_open_file() -> Path:
     return Path(bpy.data.filepath)
 
 
-class RADIOSITY_OT_bake_frames(bpy.types.Operator):
-    """Bake the scene's range of frames: blocking from a script, frame by frame with a way out from the window."""
+class RADIOSITY_OT_bake_frames(TwoDoors, bpy.types.Operator):
+    """Bake the scene's range of frames."""
 
     bl_idname = "radiosity.bake_frames"
     bl_label = "Bake Frames"
@@ -351,122 +362,12 @@ class RADIOSITY_OT_bake_frames(bpy.types.Operator):
             cls.poll_message_set(reason)
         return reason is None
 
-    def execute(self, context):
-        """Bake all frames to the end: the door for scripts."""
-        try:
-            frame_range = self._frame_range(context)
-            try:
-                while not frame_range.done:
-                    scene, settings, light = frame_range.begin()
-                    frame_range.take(light(scene, settings, no_progress))
-                report = frame_range.finish()
-            finally:
-                frame_range.leave()
-        except (BakeError, Cancelled) as error:
-            return self._gave_up(error)
-        return self._done(report)
-
-    def invoke(self, context, _event):
-        """Begin the first frame in a thread, and watch it: the door for people."""
-        self._timer = None
-        try:
-            self._range = self._frame_range(context)
-        except BakeError as error:
-            return self._gave_up(error)
-        try:
-            self._begin()
-        except BakeError as error:
-            self._range.leave()
-            return self._gave_up(error)
-        context.window_manager.progress_begin(0, 100)
-        self._timer = context.window_manager.event_timer_add(POLL_SECONDS, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context, event):
-        """Take each frame when it is done and begin the next."""
-        job = RADIOSITY_OT_bake.job
-        if event.type == "ESC" and event.value == "PRESS":
-            job.cancel()
-        if job.cancelled:
-            self._leave(context)
-            return self._gave_up(Cancelled())
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        self._messages += job.messages()
-        if not self._messages:
-            return {"PASS_THROUGH"}
-        last = self._messages[-1]
-        if isinstance(last, Progress):
-            self._messages.clear()
-        elif context.mode != "OBJECT":
-            # Neither can another frame be read in the middle of an edit, nor the light be stored.
-            job.latest = Progress(f"{way_to_object_mode(context)} to go on with the frames", job.latest.share)
-        else:
-            self._messages.clear()
-            return self._go_on(context, last)
-        self._show(context, job.latest)
-        return {"PASS_THROUGH"}
-
-    def cancel(self, context):
-        """Stop when Blender ends the operator itself, as it does when another file is opened."""
-        RADIOSITY_OT_bake.job.cancel()
-        self._leave(context)
-
-    def _frame_range(self, context) -> FrameRange:
+    def task(self, context):
+        """Return the bake of what is selected at every frame."""
         scene = context.scene
         files = files_of_open_file() if self.frame_output == "FILES" else None
         frames = range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
         return FrameRange(context, context.selected_objects, bake_settings(scene.radiosity), frames, files)
-
-    def _begin(self) -> None:
-        scene, settings, light = self._range.begin()
-        self._messages = []
-        RADIOSITY_OT_bake.job = BakeJob(light, scene, settings)
-        RADIOSITY_OT_bake.job.start()
-
-    def _go_on(self, context, message):
-        try:
-            if isinstance(message, Failed):
-                raise message.error
-            self._range.take(message.result)
-            if not self._range.done:
-                self._begin()
-                return {"PASS_THROUGH"}
-            report = self._range.finish()
-        except (BakeError, Cancelled) as error:
-            self._leave(context)
-            return self._gave_up(error)
-        except BaseException:
-            self._leave(context)
-            raise
-        self._leave(context)
-        return self._done(report)
-
-    def _done(self, report):
-        self.report({"WARNING" if report["warnings"] else "INFO"}, summary_of(report))
-        return {"FINISHED"}
-
-    def _gave_up(self, error: BakeError | Cancelled):
-        if isinstance(error, Cancelled):
-            self.report({"INFO"}, "Bake of the frames cancelled")
-        else:
-            self.report({"ERROR"}, str(error))
-        return {"CANCELLED"}
-
-    def _show(self, context, progress: Progress) -> None:
-        context.workspace.status_text_set(f"Radiosity  {progress.share:.0%}  {progress.stage}  |  Esc: Cancel")
-        context.window_manager.progress_update(100.0 * progress.share)
-        redraw_panels(context)
-
-    def _leave(self, context) -> None:
-        RADIOSITY_OT_bake.job = None
-        self._range.leave()
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            context.window_manager.progress_end()
-            context.workspace.status_text_set(None)
-        redraw_panels(context)
 
 
 def summary_of(report: dict[str, Any]) -> str:

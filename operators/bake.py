@@ -1,23 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bake: one operator with two doors, and the use case behind both."""
+"""The bake of the selected objects: the use case, and its operator."""
 
 import json
 import time
 from collections.abc import Iterable
-from typing import Any, ClassVar
+from typing import Any
 
 import bpy
 
-from ..core.errors import BakeError, Cancelled
-from ..core.progress import Progress, ProgressCallback, no_progress
+from ..core.progress import ProgressCallback, no_progress
 from ..core.result import BakeResult
 from ..core.scene import Scene
 from ..core.settings import BakeSettings
 from .attributes import attributes_of, attributes_to_be
-from .display import show_in_viewport
+from .doors import TwoDoors, Watch, run_to_end, way_to_object_mode
 from .extraction import Extraction, extract
-from .job import BakeJob, Failed, Finished
+from .job import Bake
 from .record import source_of
 from .sets import without_sets
 from .settings import bake_settings
@@ -25,9 +24,59 @@ from .store import check_storable, scene_of, store
 from .targets import shows_surfaces
 from .transports import remember
 
-POLL_SECONDS = 0.1
-_PATIENCE_SECONDS = 0.3
-"""How long Esc waits for the thread. It stops at its next message anyway, and what it finds then is thrown away."""
+
+class SingleBake:
+    """The bake of some objects as they are now: a task of one step."""
+
+    purpose = "finish the bake"
+    cancelled = "Bake cancelled; nothing was changed"
+
+    def __init__(self, context: bpy.types.Context, objects: Iterable[bpy.types.Object], settings: BakeSettings) -> None:
+        """Prepare to bake `objects`."""
+        self._context = context
+        self._objects = list(objects)
+        self._settings = settings
+        self._extraction: Extraction | None = None
+        self._read = 0.0
+        self._result: BakeResult | None = None
+
+    @property
+    def done(self) -> bool:
+        """Whether the light was taken."""
+        return self._result is not None
+
+    def begin(self) -> tuple[Scene, BakeSettings, Bake]:
+        """Read the scene, and return what lights it.
+
+        Raises
+        ------
+        BakeError
+            As the extraction raises it.
+        """
+        began = time.perf_counter()
+        self._extraction = extract(self._context, self._objects, self._settings.output)
+        # Pointers do not survive an undo.
+        self._objects.clear()
+        check_storable(self._extraction, attributes_to_be(self._settings, self._extraction.scene))
+        self._read = time.perf_counter() - began
+        return self._extraction.scene, self._settings, trace
+
+    def take(self, result: BakeResult) -> None:
+        """Keep the light."""
+        self._result = result
+
+    def finish(self) -> dict[str, Any]:
+        """Store the light, and return the report."""
+        return finish(self._extraction, self._result, self._settings, self._read)
+
+    def leave(self) -> None:
+        """Nothing was changed that is to be put back."""
+
+    def summary(self, report: dict[str, Any]) -> str:
+        """Return one sentence about the bake."""
+        sentence = f"Baked {counted(len(report['objects']), 'object')} in {report['seconds']['total']:.1f} s"
+        warnings = len(report["warnings"])
+        return f"{sentence}, with {counted(warnings, 'warning')}: see the Radiosity panel" if warnings else sentence
 
 
 def bake_objects(
@@ -45,17 +94,13 @@ def bake_objects(
     Cancelled
         When `progress` raised it; nothing was changed.
     """
-    began = time.perf_counter()
-    extraction = extract(context, objects, settings.output)
-    check_storable(extraction, attributes_to_be(settings, extraction.scene))
-    read = time.perf_counter() - began
-    return finish(extraction, trace(extraction.scene, settings, progress), settings, read)
+    return run_to_end(SingleBake(context, objects, settings), progress)
 
 
 def finish(extraction: Extraction, result: BakeResult, settings: BakeSettings, read: float) -> dict[str, Any]:
     """Store `result`, then write and return the report; `read` is the seconds that the extraction took."""
     began = time.perf_counter()
-    scene = scene_of(extraction)
+    scene = scene_of(extraction.scene_uid)
     attributes, exposure = attributes_of(settings, extraction, result)
     objects, cautions = store(scene, extraction, result, attributes, without_sets)
     remember(scene, extraction, settings, result, objects)
@@ -119,7 +164,7 @@ def ray_library_problem() -> str | None:
 
 def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     """Return a sentence that says why the bake button is grey, or None when it is not."""
-    if RADIOSITY_OT_bake.job is not None:
+    if Watch.running is not None:
         return "A bake is running; wait for it or press Esc"
     problem = ray_library_problem()
     if problem is not None:
@@ -137,24 +182,13 @@ def reason_not_to_bake(context: bpy.types.Context) -> str | None:
     return None
 
 
-def way_to_object_mode(context: bpy.types.Context) -> str:
-    """Return what to do to get into object mode, to begin a sentence with."""
-    return "Leave edit mode" if "EDIT" in context.mode else "Switch to object mode"
-
-
 def counted(number: int, noun: str) -> str:
     """Return "1 object" or "3 objects"."""
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
-def stop_running_job() -> None:
-    """Ask a running bake to stop, if there is one."""
-    if RADIOSITY_OT_bake.job is not None:
-        RADIOSITY_OT_bake.job.cancel()
-
-
-class RADIOSITY_OT_bake(bpy.types.Operator):
-    """Bake the selected meshes: blocking from a script, with progress and a way out from the window."""
+class RADIOSITY_OT_bake(TwoDoors, bpy.types.Operator):
+    """Bake the selected meshes."""
 
     bl_idname = "radiosity.bake"
     bl_label = "Bake Radiosity"
@@ -162,9 +196,6 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
         "Compute how light spreads between all that renders, and store it in the vertex colours of the selected meshes"
     )
     bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 - Blender reads it from the class
-
-    job: ClassVar[BakeJob | None] = None
-    """The bake that runs in the window; there is at most one, and the panel shows its progress."""
 
     @classmethod
     def poll(cls, context):
@@ -174,132 +205,6 @@ class RADIOSITY_OT_bake(bpy.types.Operator):
             cls.poll_message_set(reason)
         return reason is None
 
-    def execute(self, context):
-        """Bake to the end: the door for scripts."""
-        try:
-            report = bake_objects(context, context.selected_objects, bake_settings(context.scene.radiosity))
-        except (BakeError, Cancelled) as error:
-            return self._gave_up(error)
-        return self._done(report)
-
-    def invoke(self, context, _event):
-        """Start the bake in its thread and watch it: the door for people."""
-        began = time.perf_counter()
-        try:
-            self._settings = bake_settings(context.scene.radiosity)
-            self._extraction = extract(context, context.selected_objects, self._settings.output)
-            check_storable(self._extraction, attributes_to_be(self._settings, self._extraction.scene))
-        except BakeError as error:
-            return self._gave_up(error)
-        self._read = time.perf_counter() - began
-        self._outcome = None
-        job = RADIOSITY_OT_bake.job = BakeJob(_core_bake(), self._extraction.scene, self._settings)
-        window_manager = context.window_manager
-        self._timer = window_manager.event_timer_add(POLL_SECONDS, window=context.window)
-        window_manager.progress_begin(0, 100)
-        window_manager.modal_handler_add(self)
-        job.start()
-        self._show(context, job.latest)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context, event):
-        """Show how far the bake is; store it when it is done."""
-        job = RADIOSITY_OT_bake.job
-        if event.type == "ESC" and event.value == "PRESS":
-            job.cancel()
-        if job.cancelled:
-            job.wait(_PATIENCE_SECONDS)
-            self._leave(context)
-            return self._gave_up(Cancelled())
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        messages = job.messages()
-        if messages and not isinstance(messages[-1], Progress):
-            self._outcome = messages[-1]
-        if self._outcome is not None and not self._must_wait(context):
-            # Blender may keep the operator, and with it what it holds.
-            outcome, self._outcome = self._outcome, None
-            self._leave(context)
-            return self._end(context, outcome)
-        if self._outcome is not None:
-            # Objects cannot be exchanged, nor the step of undo be made, in the middle of an edit.
-            job.latest = Progress(f"{way_to_object_mode(context)} to finish the bake", 1.0)
-        if messages:
-            self._show(context, job.latest)
-        return {"PASS_THROUGH"}
-
-    def cancel(self, context):
-        """Stop the bake when Blender ends the operator itself, as it does when another file is opened."""
-        stop_running_job()
-        self._leave(context)
-
-    def _must_wait(self, context) -> bool:
-        return isinstance(self._outcome, Finished) and context.mode != "OBJECT"
-
-    def _end(self, context, message: Finished | Failed):
-        try:
-            if isinstance(message, Failed):
-                raise message.error
-            report = finish(self._extraction, message.result, self._settings, self._read)
-        except (BakeError, Cancelled) as error:
-            return self._gave_up(error)
-        show_in_viewport(context, (bpy.data.objects[name] for name in report["objects"]))
-        return self._done(report)
-
-    def _done(self, report):
-        warnings = len(report["warnings"])
-        sentence = f"Baked {counted(len(report['objects']), 'object')} in {report['seconds']['total']:.1f} s"
-        if warnings:
-            sentence += f", with {counted(warnings, 'warning')}: see the Radiosity panel"
-        self.report({"WARNING" if warnings else "INFO"}, sentence)
-        return {"FINISHED"}
-
-    def _gave_up(self, error: BakeError | Cancelled):
-        if isinstance(error, Cancelled):
-            self.report({"INFO"}, "Bake cancelled; nothing was changed")
-        else:
-            self.report({"ERROR"}, str(error))
-        return {"CANCELLED"}
-
-    def _show(self, context, progress: Progress) -> None:
-        detail = f" ({progress.detail})" if progress.detail else ""
-        context.workspace.status_text_set(f"Radiosity  {progress.share:.0%}  {progress.stage}{detail}  |  Esc: Cancel")
-        context.window_manager.progress_update(100.0 * progress.share)
-        redraw_panels(context)
-
-    def _leave(self, context) -> None:
-        RADIOSITY_OT_bake.job = None
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-        redraw_panels(context)
-
-
-class RADIOSITY_OT_cancel(bpy.types.Operator):
-    """Ask the running bake to stop."""
-
-    bl_idname = "radiosity.cancel"
-    bl_label = "Cancel Bake"
-    bl_description = "Stop the bake that is running; nothing is changed. Esc does the same"
-    bl_options = {"INTERNAL"}  # noqa: RUF012 - Blender reads it from the class
-
-    @classmethod
-    def poll(cls, _context):
-        """Return whether a bake is running."""
-        return RADIOSITY_OT_bake.job is not None
-
-    def execute(self, _context):
-        """Ask the running bake to stop."""
-        stop_running_job()
-        return {"FINISHED"}
-
-
-def redraw_panels(context: bpy.types.Context) -> None:
-    """Redraw the sidebars of the 3D viewports; drawing a heavy scene as well would delay Esc."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                for region in area.regions:
-                    if region.type == "UI":
-                        region.tag_redraw()
+    def task(self, context):
+        """Return the bake of what is selected."""
+        return SingleBake(context, context.selected_objects, bake_settings(context.scene.radiosity))

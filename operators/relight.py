@@ -16,8 +16,9 @@ from ..core.result import BakedMesh, BakeResult
 from ..core.settings import BakeSettings
 from . import display
 from .attributes import Attributes, attributes_of
-from .bake import RADIOSITY_OT_bake, counted, shown_report, way_to_object_mode
+from .bake import counted, shown_report
 from .colours import rewrite_colours
+from .doors import Watch, way_to_object_mode
 from .extraction import Extraction, extract
 from .journal import Journal
 from .local_mesh import fingerprint
@@ -125,7 +126,7 @@ def _show(
 
 def reason_not_to_relight(context: bpy.types.Context) -> str | None:
     """Return a sentence that says why the button is grey, or None when it is not."""
-    if RADIOSITY_OT_bake.job is not None:
+    if Watch.running is not None:
         return "A bake is running; wait for it or press Esc"
     if context.mode != "OBJECT":
         return f"{way_to_object_mode(context)} to relight"

@@ -57,11 +57,7 @@ def store(
         See `check_storable`.
     """
     output = attributes.settings.output
-    view_layer = scene.view_layers.get(extraction.view_layer)
-    if view_layer is None:
-        raise ChangedMeanwhileError(
-            f'The view layer "{extraction.view_layer}" was removed or renamed during the bake; nothing was stored'
-        )
+    view_layer = view_layer_of(scene, extraction.view_layer)
     check_storable(extraction, attributes)
     pairs = baked_targets(extraction.scene, extraction.targets, result, attributes.settings)
     found = _find([target for target, _ in pairs], view_layer)
@@ -102,8 +98,19 @@ def check_storable(extraction: Extraction, attributes: Attributes) -> None:
             check_names(obj, attributes)
 
 
-def scene_of(extraction: Extraction) -> bpy.types.Scene:
-    """Return the scene that was read, which need not be the one that the window shows by now.
+def check_unchanged(extraction: Extraction) -> None:
+    """Refuse what is no longer there as it was read.
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        When the scene, its view layer or an object was deleted, or an object edited.
+    """
+    _find(list(extraction.targets), view_layer_of(scene_of(extraction.scene_uid), extraction.view_layer))
+
+
+def scene_of(uid: int) -> bpy.types.Scene:
+    """Return the scene of a `session_uid`, which need not be the one that the window shows by now.
 
     Raises
     ------
@@ -111,9 +118,25 @@ def scene_of(extraction: Extraction) -> bpy.types.Scene:
         When it was deleted.
     """
     for scene in bpy.data.scenes:
-        if scene.session_uid == extraction.scene_uid:
+        if scene.session_uid == uid:
             return scene
     raise ChangedMeanwhileError("The scene was deleted during the bake; nothing was stored")
+
+
+def view_layer_of(scene: bpy.types.Scene, name: str) -> bpy.types.ViewLayer:
+    """Return the view layer of a name.
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        When it was deleted.
+    """
+    view_layer = scene.view_layers.get(name)
+    if view_layer is None:
+        raise ChangedMeanwhileError(
+            f'The view layer "{name}" was removed or renamed during the bake; nothing was stored'
+        )
+    return view_layer
 
 
 def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[Target, bpy.types.Object]]:

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 import bpy
 
-from ..operators.bake import RADIOSITY_OT_bake, reason_not_to_bake
+from ..operators.bake import reason_not_to_bake
+from ..operators.doors import Watch
 
 _CHARACTER_WIDTH = 7.0
 """Average width of a letter in pixels at a scale of 1, to break sentences where the panel ends."""
@@ -31,18 +32,18 @@ class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.radiosity
-        job = RADIOSITY_OT_bake.job
+        running = Watch.running
 
         column = layout.column()
-        column.active = job is None
+        column.active = running is None
         column.prop(settings, "quality")
         column.prop(settings, "output")
         column.prop(settings, "method")
         column.prop(settings, "threshold")
         column.prop(settings, "minimum_size")
 
-        if job is not None:
-            _draw_progress(layout, job.latest)
+        if running is not None:
+            _draw_progress(layout, running.latest)
             return
         row = layout.row()
         row.scale_y = 1.5
@@ -128,7 +129,7 @@ def _draw_settings(layout, context, names: Sequence[str]) -> None:
     """Draw settings of the scene below each other, greyed while a bake runs."""
     layout.use_property_split = True
     layout.use_property_decorate = False
-    layout.active = RADIOSITY_OT_bake.job is None
+    layout.active = Watch.running is None
     for name in names:
         layout.prop(context.scene.radiosity, name)
 

@@ -37,7 +37,7 @@ else:
     def empty_file(registered):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         yield
-        assert radiosity_bake.operators.bake.RADIOSITY_OT_bake.job is None, "a bake was left running"
+        assert radiosity_bake.operators.doors.Watch.running is None, "a bake was left running"
 
     @pytest.fixture
     def run_instead(monkeypatch):

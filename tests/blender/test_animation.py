@@ -25,7 +25,7 @@ from tests.blender.making import (
     select_also,
 )
 from tests.blender.state import differences, file_state
-from tests.blender.test_modal import ESC, MOUSE, TIMER, ModalBake, Window, assert_left, until_it_ends
+from tests.blender.test_modal import ESC, MOUSE, TIMER, assert_left, begun, until_it_ends
 
 ROUNDING = 1e-5
 """Of the largest value, as in the tests of relighting."""
@@ -232,24 +232,13 @@ def test_the_command_refuses_what_is_no_range(room, tmp_path, monkeypatch, capsy
 # From the window
 
 
-class ModalFrames(ModalBake):
-    """The operator's methods on a plain object, since Blender alone can make operators."""
-
-    frame_output = "ATTRIBUTES"
-
-    def __getattr__(self, name):
-        return getattr(RADIOSITY_OT_bake_frames, name).__get__(self)
-
-
-def begun():
-    operator, window = ModalFrames(), Window()
-    assert operator.invoke(window, None) == {"RUNNING_MODAL"}
-    return operator, window
+def begun_frames():
+    return begun(RADIOSITY_OT_bake_frames, frame_output="ATTRIBUTES")
 
 
 def test_from_the_window_frames_are_baked_one_after_the_other(room):
     floor, _ = room
-    operator, window = begun()
+    operator, window = begun_frames()
     assert operator.modal(window, MOUSE) == {"PASS_THROUGH"}
     assert until_it_ends(operator, window) == {"FINISHED"}
     assert_left(window)
@@ -260,7 +249,7 @@ def test_from_the_window_frames_are_baked_one_after_the_other(room):
 
 def test_esc_leaves_the_frames_and_changes_nothing(room):
     before = file_state()
-    operator, window = begun()
+    operator, window = begun_frames()
     assert operator.modal(window, ESC) == {"CANCELLED"}
     assert_left(window)
     assert not differences(before, file_state())
@@ -270,7 +259,7 @@ def test_esc_leaves_the_frames_and_changes_nothing(room):
 @pytest.mark.usefixtures("quick_bake")
 def test_a_frame_that_ends_in_edit_mode_waits_until_the_mode_is_left(room):
     floor, _ = room
-    operator, window = begun()
+    operator, window = begun_frames()
     bpy.ops.object.mode_set(mode="EDIT")
     began = time.monotonic()
     while "Leave edit mode to go on with the frames" not in (window.status or ""):
@@ -284,7 +273,7 @@ def test_a_frame_that_ends_in_edit_mode_waits_until_the_mode_is_left(room):
 
 def test_an_error_from_the_window_is_told_with_its_frame(room):
     bpy.data.lights["Lamp"].energy = 0.0
-    operator, window = begun()
+    operator, window = begun_frames()
     assert until_it_ends(operator, window) == {"CANCELLED"}
     assert_left(window)
     ((kind, sentence),) = operator.reports

@@ -9,6 +9,7 @@ import bpy
 import pytest
 from radiosity_bake.core.progress import Progress
 from radiosity_bake.operators.bake import RADIOSITY_OT_bake
+from radiosity_bake.operators.doors import Watch
 
 from tests.blender.making import add_cube, dark_bake
 from tests.blender.state import file_state
@@ -56,17 +57,18 @@ class Window:
         self.status = text
 
 
-class ModalBake:
-    """The operator's methods on a plain object, since Blender alone can make operators."""
+class Operator:
+    """An operator's doors on a plain object, since Blender alone can make operators."""
 
-    def __init__(self):
-        self.reports = []
+    def __init__(self, kind=RADIOSITY_OT_bake, **properties):
+        self.kind, self.reports = kind, []
+        self.__dict__.update(properties)
 
     def report(self, kind, text):
         self.reports.append((*kind, text))
 
     def __getattr__(self, name):
-        return getattr(RADIOSITY_OT_bake, name).__get__(self)
+        return getattr(self.kind, name).__get__(self)
 
 
 TIMER = SimpleNamespace(type="TIMER", value="NOTHING")
@@ -74,9 +76,9 @@ ESC = SimpleNamespace(type="ESC", value="PRESS")
 MOUSE = SimpleNamespace(type="MOUSEMOVE", value="NOTHING")
 
 
-def begun():
-    """Return a bake of the selected objects that has begun, and its window."""
-    operator, window = ModalBake(), Window()
+def begun(kind=RADIOSITY_OT_bake, **properties):
+    """Return an operator whose bake of the selected objects has begun, and its window."""
+    operator, window = Operator(kind, **properties), Window()
     assert operator.invoke(window, None) == {"RUNNING_MODAL"}
     return operator, window
 
@@ -100,7 +102,7 @@ def until_it_waits(operator, window):
 
 
 def assert_left(window):
-    assert RADIOSITY_OT_bake.job is None
+    assert Watch.running is None
     assert (window.timers, window.progress, window.status) == (0, None, None)
 
 
@@ -165,7 +167,7 @@ def test_a_modal_bake_shows_stage_share_and_counts(run_instead):
     add_cube(select=True)
     run_instead(slow)
     operator, window = begun()
-    while not RADIOSITY_OT_bake.job.latest.detail:
+    while not Watch.running.latest.detail:
         operator.modal(window, TIMER)
     assert "Form factors" in window.status and "rays" in window.status and "%" in window.status
     operator.modal(window, ESC)
@@ -249,6 +251,6 @@ def test_a_modal_bake_stores_in_the_scene_that_it_read(quick_bake):
 @pytest.mark.usefixtures("quick_bake")
 def test_invalid_settings_are_a_sentence(refused_settings):
     add_cube(select=True)
-    operator = ModalBake()
+    operator = Operator()
     assert operator.invoke(Window(), None) == {"CANCELLED"}
     assert operator.reports == [("ERROR", refused_settings)]

@@ -6,7 +6,8 @@ import bpy
 import numpy as np
 import pytest
 from radiosity_bake.core.errors import Cancelled
-from radiosity_bake.operators.bake import RADIOSITY_OT_bake, bake_objects, reason_not_to_bake
+from radiosity_bake.operators.bake import bake_objects, reason_not_to_bake
+from radiosity_bake.operators.doors import Watch
 from radiosity_bake.operators.settings import bake_settings
 
 from tests.blender.making import (
@@ -58,7 +59,7 @@ def test_the_button_is_grey_without_the_ray_library_and_says_why(monkeypatch):
 
 def test_the_button_is_grey_while_a_bake_runs(monkeypatch):
     add_cube(select=True)
-    monkeypatch.setattr(RADIOSITY_OT_bake, "job", object())
+    monkeypatch.setattr(Watch, "running", object())
     assert "running" in reason_not_to_bake(bpy.context)
 
 

@@ -8,7 +8,7 @@ import pytest
 import radiosity_bake
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.operators import transports
-from radiosity_bake.operators.bake import RADIOSITY_OT_bake
+from radiosity_bake.operators.doors import Watch
 from radiosity_bake.operators.relight import reason_not_to_relight
 
 from tests.blender.making import (
@@ -200,7 +200,7 @@ def test_the_button_is_grey_in_edit_mode_and_while_a_bake_runs(room, monkeypatch
     assert reason_not_to_relight(bpy.context) == "Leave edit mode to relight"
     bpy.ops.object.mode_set(mode="OBJECT")
     assert reason_not_to_relight(bpy.context) is None
-    monkeypatch.setattr(RADIOSITY_OT_bake, "job", object())
+    monkeypatch.setattr(Watch, "running", object())
     assert "running" in reason_not_to_relight(bpy.context)
 
 
