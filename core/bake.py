@@ -135,12 +135,20 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
 def _ray_scene(
     surfaces: Surfaces, seen: NDArray[np.bool_], shadow: NDArray[np.bool_], settings: BakeSettings
 ) -> RayScene:
-    return RayScene(surfaces.traced_points(), surfaces.triangles, settings.threads, seen, shadow, surfaces.blockers())
+    return RayScene(
+        surfaces.traced_points(),
+        surfaces.triangles,
+        settings.threads,
+        seen,
+        shadow,
+        surfaces.blockers(),
+        surfaces.transmittance,
+    )
 
 
 def _lit_sides(surfaces: Surfaces, rays: RayScene, settings: BakeSettings) -> NDArray[np.bool_]:
     """Whether light reaches the front and the back of each shell, (shells, 2), through what lets some of it pass."""
-    met = surfaces.seen & surfaces.shadow
+    met = surfaces.seen & surfaces.shadow & ~surfaces.is_partly_clear()
     if met.all():
         return lit_sides(surfaces, rays, settings.seed)
     with closing(_ray_scene(surfaces, met, met, settings)) as solids:

@@ -20,6 +20,7 @@ from .scene import UNLINKED, Floats, Ints, Texture
 from .solve import Exchange, Solution
 from .surfaces import Surfaces
 from .textures import mean_colours
+from .transmittance import of_opaque
 from .transport import Transport, sample_points
 
 POINTS_PER_PATCH = 4
@@ -71,12 +72,23 @@ class TriangleMeans:
         return np.stack(columns, axis=1)
 
     def reflectance(self, surfaces: Surfaces) -> Floats:
-        """Of each element, (count, 3)."""
-        return self.of(surfaces.reflectance, surfaces.reflectance_texture)
+        """Of what is opaque of each element, (count, 3)."""
+        reflectance = self.of_opaque(self.of(surfaces.reflectance, surfaces.reflectance_texture), surfaces)
+        return reflectance if surfaces.transmittance is None else np.minimum(reflectance, 1.0)
 
     def emission(self, surfaces: Surfaces) -> Floats:
-        """Of each element, (count, 3), W m^-2 sr^-1."""
-        return self.of(surfaces.emission, surfaces.emission_texture)
+        """Of what is opaque of each element, (count, 3), W m^-2 sr^-1."""
+        return self.of_opaque(self.of(surfaces.emission, surfaces.emission_texture), surfaces)
+
+    def of_opaque(self, colours: Floats, surfaces: Surfaces) -> Floats:
+        """Means over elements (count, 3) as those of what is opaque of them, which rays meet."""
+        return colours if surfaces.transmittance is None else of_opaque(colours, self.opacity(surfaces))
+
+    def opacity(self, surfaces: Surfaces) -> Floats:
+        """Share of each element that light does not go through, (count, 1)."""
+        if surfaces.transmittance is None:
+            return np.ones((self.count, 1))
+        return 1.0 - self.of(surfaces.transmittance.means, surfaces.transmittance.texture)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +150,7 @@ class Balance:
     sky : SkyShares or None
         Where these leave it to, where the world has a map.
     areas : (m,) float
-        Area that is not inside a solid.
+        Area that is not inside a solid, and that light does not go through.
     buried : (m,) float
         Share of the area that is.
     means : TriangleMeans
@@ -191,7 +203,7 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
         sky_shares(transport, number, escape) if surfaces.world.ndim > 1 else None,
-        tree.areas(base >> 1) * (1.0 - buried) * share,
+        tree.areas(base >> 1) * (1.0 - buried) * share * means.opacity(surfaces)[:, 0],
         buried,
         means,
         means.reflectance(surfaces),
@@ -263,7 +275,7 @@ def unreflected_light(balance: Balance, direct: DirectLight, emitters: Emitters,
         What the elements get of the emitters.
     """
     left = left_emission(surfaces, emitters)
-    by_rays = balance.exchange.apply(balance.means.of(left))
+    by_rays = balance.exchange.apply(balance.means.of_opaque(balance.means.of(left), surfaces))
     return direct.irradiance(emitters.strengths) + by_rays + balance.from_world(surfaces.world)
 
 
@@ -331,7 +343,8 @@ def _direct_at(
 def seen_radiance(nodes: int, balance: Balance, solution: Solution, emitters: Emitters, surfaces: Surfaces) -> Floats:
     """What gather rays see on each element and twin: reflected light, and emission that is not sampled explicitly."""
     values = np.zeros((max(2 * nodes, int(balance.elements.max(initial=0)) + 1), 3))
-    values[balance.elements] = solution.reflected + balance.means.of(left_emission(surfaces, emitters))
+    left = balance.means.of(left_emission(surfaces, emitters))
+    values[balance.elements] = solution.reflected + balance.means.of_opaque(left, surfaces)
     return values
 
 

@@ -22,12 +22,10 @@ from .lamps import lamp_light
 from .light_tree import LightTree, light_tree
 from .many_lights import light_of_many
 from .sampling import LATTICE_ERROR, Singles, hashed, ray_counts, sequence, triangle_lattice
+from .scene import LUMINANCE as LUMINANCE
 from .scene import UNLINKED, Floats, Ints, Lamp, LightLinking, SunLamp
 from .surfaces import Surfaces
-from .visibility import OFFSET, RayScene
-
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-"""Rec. 709 luminance of linear RGB."""
+from .visibility import OFFSET, RayScene, spread_of_rays
 
 FEW_EMITTERS = 16
 """Emitters of which each gets a ray of its own beside its share: where nothing is hidden the result is then exact."""
@@ -313,7 +311,7 @@ def _direct_of_each(
     local = pieces * rays.scale + back.T.take(row, axis=1)
     local += _off_plane(pieces[0], emitters.normals.T.take(emitter, axis=1), rays.scale)
     flat = local.astype(np.float32)
-    visible = np.zeros(len(row))
+    visible, spread = np.zeros(len(row)), np.zeros(len(row))
     for rays_each in np.unique(rays_of[rays_of > 0]):
         same = np.flatnonzero(rays_of == rays_each)
         # Of the same pattern in a row, for one product of matrices each.
@@ -322,9 +320,10 @@ def _direct_of_each(
         toward = _ways(flat.take(same, axis=2), pattern[at], int(rays_each), seed)
         seen = rays.visible(origins.take(at, axis=0), toward)
         low = np.flatnonzero(leaning[same])
-        seen[low] &= np.einsum("prx,px->pr", toward[low], lift[at[low]]) > -OFFSET
+        seen[low] *= np.einsum("prx,px->pr", toward[low], lift[at[low]]) > -OFFSET
         visible[same] = _visible_share(seen, toward, normals, at)
-    variance = LATTICE_ERROR**2 * visible * (1.0 - visible) * np.maximum(rays_of, 1) ** -1.5 * light**2
+        spread[same] = spread_of_rays(seen, visible[same])
+    variance = LATTICE_ERROR**2 * spread * np.maximum(rays_of, 1) ** -1.5 * light**2
     uncertainty = np.sqrt(np.bincount(row, weights=variance, minlength=count))
     return DirectLight.of(count, row, emitter, factor * visible), uncertainty
 
@@ -399,12 +398,12 @@ def _spread(rays: int, pattern: int, seed: int) -> Singles:
     return np.kron(triangle_lattice(rays, shift).T, np.eye(3)).astype(np.float32)
 
 
-def _visible_share(seen: NDArray[np.bool_], toward: Singles, normals: Floats, receiver: Ints) -> Floats:
+def _visible_share(seen: NDArray[np.bool_] | Singles, toward: Singles, normals: Floats, receiver: Ints) -> Floats:
     """Share of the form factor of triangles that comes through, by rays spread over their area, (p,).
 
     Parameters
     ----------
-    seen : (p, r) bool
+    seen : (p, r) bool, or float32 where something lets a part of the light through
     toward : (p, r, 3) float32
         From the receiver to the point that the ray asks for.
     normals : (n, 3) float

@@ -18,7 +18,7 @@ from .geometry import order_along_curve
 from .met_places import MetPlaces
 from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP, ESCAPED
-from .sampling import Singles, frames, hemisphere_lattice
+from .sampling import Singles, chances, frames, hemisphere_lattice
 from .scene import Floats, Ints
 from .surfaces import HAIR
 from .transport import Transport
@@ -285,7 +285,12 @@ def _looked(
     directions = (pattern @ frames(normals, np.zeros(len(normals)))).reshape(-1, 3)
     lift = receivers.lift[part].astype(np.float32)
     origins = np.repeat(transport.rays.local(receivers.points[part]) + lift * np.float32(OFFSET), rays, axis=0)
-    found = transport.rays.first_hits(origins, directions)
+    even = (
+        np.tile(chances(0, rays).astype(np.float32), len(normals))
+        if transport.surfaces.transmittance is not None
+        else None
+    )
+    found = transport.rays.first_hits(origins, directions, even)
     if not np.any(np.abs(normals - lift) > FLAT):
         return found, directions, slice(0)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.

@@ -20,7 +20,7 @@ from .form_factors import point_to_triangle
 from .geometry import order_along_curve
 from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
 from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, SunLamp
-from .visibility import OFFSET, RayScene
+from .visibility import OFFSET, RayScene, spread_of_rays
 
 FEW_LAMPS = 32
 """Lamps of which each gets a ray from every receiver: as many as a world may have suns."""
@@ -153,7 +153,7 @@ def lamp_light(
         lamp = lamps[number]
         some = np.flatnonzero(whole[number])
         rays_of = np.ones_like(some) if _is_sharp(lamp) else wanted[number, some]
-        visible = np.ones(len(some))
+        visible, spread = np.ones(len(some)), np.zeros(len(some))
         for rays_each in np.unique(rays_of) if lamp.shadow else ():
             same = np.flatnonzero(rays_of == rays_each)
             size = PLACES_AT_ONCE // int(rays_each)
@@ -161,8 +161,8 @@ def lamp_light(
                 at = some[part]
                 ways = _ways(lamp, points[at], int(rays_each), shifts[at])
                 hidden_by = rays.hidden_by(lamp.linking.blockers)
-                visible[part] = _visible_share(lamp, hidden_by, points[at], normals[at], lift[at], ways)
-        doubt = visible * (1.0 - visible) * rays_of**-1.5
+                visible[part], spread[part] = _visible_share(lamp, hidden_by, points[at], normals[at], lift[at], ways)
+        doubt = spread * rays_of**-1.5
         variance[some] += LATTICE_ERROR**2 * doubt * bright[number, some] ** 2
         emitter = np.full(len(some), first_number + number)
         entries.append(DirectLight.of(count, some, emitter, whole[number, some] * visible))
@@ -243,14 +243,14 @@ def _light_of_drawn(
     origins, back = rays.lifted(points[at[ask]], lift[at[ask]])
     local = ways * rays.scale + back + OFFSET * facing
     above = np.einsum("rx,rx->r", local, lift[at[ask]]) > -OFFSET
-    visible[ask] = above & rays.visible(origins, local.astype(np.float32)[:, None])[:, 0]
+    visible[ask] = above * rays.visible(origins, local.astype(np.float32)[:, None])[:, 0]
     for which in np.unique(drawn.lamp[~simple[drawn.lamp]]):
         lamp = lamps[which]
         some = np.flatnonzero(drawn.lamp == which) if lamp.shadow else np.zeros(0, dtype=np.int64)
         there = at[some]
         ways = _raised(_ways(lamp, points[there], 1, square[some])[:, 0], normals[there])[:, None]
         hidden_by = rays.hidden_by(lamp.linking.blockers)
-        visible[some] = _visible_share(lamp, hidden_by, points[there], normals[there], lift[there], ways)
+        visible[some], _ = _visible_share(lamp, hidden_by, points[there], normals[there], lift[there], ways)
     seen = np.bincount(at, weights=visible, minlength=count)
     asked = np.maximum(np.bincount(at, minlength=count), 1)
     share = seen / asked
@@ -485,8 +485,8 @@ def _in_cone(cone: Cone, directions: Floats) -> Floats:
 
 def _visible_share(
     lamp: Lamp, rays: RayScene, points: Floats, normals: Floats, lift: Floats, ways: Floats
-) -> NDArray[np.float64]:
-    """Share of a lamp's light that comes through, by rays to places of it, (n,).
+) -> tuple[Floats, Floats]:
+    """Share of a lamp's light that comes through, by rays to places of it, and the variance of the rays, both (n,).
 
     Parameters
     ----------
@@ -503,11 +503,13 @@ def _visible_share(
     toward: Singles = local.astype(np.float32)
     kernel = _kernel(lamp, facing, normals, ways)
     # What a smooth shading normal sees below its face is dark.
-    seen = np.einsum("nrx,nx->nr", local, lift) > -OFFSET
-    ask = np.flatnonzero((seen & (kernel > 0.0)).any(axis=1))
-    seen[ask] &= rays.visible(origins[ask], toward[ask])
+    above = np.einsum("nrx,nx->nr", local, lift) > -OFFSET
+    ask = np.flatnonzero((above & (kernel > 0.0)).any(axis=1))
+    arrives = rays.visible(origins[ask], toward[ask])
+    seen = above.astype(arrives.dtype)
+    seen[ask] *= arrives
     tried = kernel.sum(axis=1)
     # A few places may all miss what little is above the horizon: then each counts alike.
     kernel[tried <= 0.0] = 1.0
     share: Floats = (kernel * seen).sum(axis=1) / kernel.sum(axis=1)
-    return share
+    return share, spread_of_rays(seen, share)

@@ -129,10 +129,10 @@ def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
     cells = patches.cells
     seen = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)[cells.element]
     reflectance = surfaces.reflectance[cells.triangle].astype(np.float32)
-    if surfaces.reflectance_texture is not None:
+    if surfaces.reflectance_texture is not None or surfaces.transmittance is not None:
         # The patch has one irradiance, but rays see what the texture makes of it.
-        varied = np.flatnonzero(np.isin(cells.triangle, surfaces.reflectance_texture.triangle))
-        reflectance[varied] = surfaces.reflectance_over(cells.triangle[varied], cells.corners(varied))
+        varied = np.flatnonzero(surfaces.vary(cells.triangle))
+        reflectance[varied] = surfaces.opaque_reflectance_over(cells.triangle[varied], cells.corners(varied))
         incident = np.zeros((int(cells.element.max()) + 1, 3))
         incident[balance.elements] = solution.incident
         for side in (2 * varied, 2 * varied + 1):

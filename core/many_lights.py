@@ -13,7 +13,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .direct_light import DirectLight
 from .form_factors import above_horizon, heights_of, piece_factor
@@ -326,7 +325,7 @@ def _draw(found: Cut, start: Ints, total: Singles, shift: Floats, shadow_rays: i
 
 def _tried(
     tree: LightTree, rays: RayScene, places: _Places, node: Ints, at: Ints, draw: _Draw
-) -> tuple[Ints, NDArray[np.bool_], Singles]:
+) -> tuple[Ints, Singles, Singles]:
     """The light each ray asks for a place of, whether that is seen, and what it sends unoccluded for its flux, (r,).
 
     Parameters
@@ -362,10 +361,10 @@ def _tried(
     square = np.einsum("rx,rx->r", toward, toward)
     weight = np.maximum(height, 0.0) * np.maximum(front, 0.0) / np.maximum(square * square, np.finfo(np.float32).tiny)
     ask = np.flatnonzero(weight > 0.0)
-    seen = np.zeros(len(weight), dtype=bool)
+    seen = np.zeros(len(weight), dtype=np.float32)
     seen[ask] = rays.visible(origins.take(receiver[ask], axis=0), toward[ask][:, None])[:, 0]
     # What a smooth shading normal sees below its face is dark.
-    seen &= np.einsum("rx,rx->r", toward, lift.astype(np.float32).take(receiver, axis=0)) > -OFFSET
+    seen *= np.einsum("rx,rx->r", toward, lift.astype(np.float32).take(receiver, axis=0)) > -OFFSET
     return light, seen, weight
 
 
@@ -377,7 +376,7 @@ def _numbers(draw: _Draw) -> Ints:
 
 
 def _visible_shares(
-    count: int, draw: _Draw, at: Ints, light: Floats, seen: NDArray[np.bool_], weight: Singles, shadow_rays: int
+    count: int, draw: _Draw, at: Ints, light: Floats, seen: Singles, weight: Singles, shadow_rays: int
 ) -> tuple[Floats, Floats]:
     """Visible shares of the p nodes and then of the strips of each receiver, and the variance of its light (n,).
 

@@ -113,6 +113,8 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     lit[emits, 0] = True
     lit[emits & ~surfaces.closed, 1] = True
     lit[np.flatnonzero(housing), inside[housing]] = False
+    # What lets light through has light on both sides.
+    lit[shell[surfaces.is_partly_clear()]] = True
     # A shell that no light reaches at all shows its front, black.
     lit[~lit.any(axis=1), 0] = True
     return lit
@@ -217,7 +219,7 @@ def _first_of_each(side: Ints, walk: Ints) -> Ints:
 
 def _passable(surfaces: Surfaces) -> NDArray[np.bool_]:
     """Shells that some light goes through, (shells,): walks take no notice of them."""
-    passable = ~(surfaces.seen & surfaces.shadow)
+    passable = ~(surfaces.seen & surfaces.shadow) | surfaces.is_partly_clear()
     result: NDArray[np.bool_] = (
         np.bincount(surfaces.shell_of_triangle, weights=passable, minlength=len(surfaces.closed)) > 0
     )

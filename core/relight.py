@@ -130,10 +130,17 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
         np.zeros(0, dtype=bool) if mark is None or not mark.any() else mark for mark in (mesh.clear, mesh.front_only)
     ]
     digest.update(_linking_code(mesh.linking))
-    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, *marks):
+    for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, *marks, *_transmittance_of(mesh)):
         digest.update(repr((array.shape, array.dtype.str)).encode())
         digest.update(np.ascontiguousarray(array).data)
     return digest.digest()
+
+
+def _transmittance_of(mesh: SurfaceMesh) -> list[NDArray[Any]]:
+    """All that tells what goes through a mesh; nothing where nothing does."""
+    share, texture = mesh.transmittance, mesh.transmittance_texture
+    constant = [] if share is None or not share.any() else [share]
+    return constant if texture is None else [*constant, texture.triangle, texture.along, texture.colours]
 
 
 def shape_of_lamp(lamp: Lamp) -> bytes:

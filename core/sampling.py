@@ -74,6 +74,12 @@ def radical_inverse(first: int, count: int) -> Floats:
     return result
 
 
+def chances(first: int, count: int) -> Floats:
+    """Numbers of rays `first` to `first + count - 1`, even whatever their directions, (count,), in [0, 1)."""
+    result: Floats = np.mod((np.arange(first, first + count) + 0.5) * (np.sqrt(3.0) - 1.0), 1.0)
+    return result
+
+
 def shifted(points: Floats, shifts: Floats) -> Floats:
     """Points (r, d) shifted for each of n receivers by (n, d), wrapped into [0, 1): (n, r, d)."""
     moved = points[None, :, :] + shifts[:, None, :]
@@ -159,6 +165,8 @@ class Patterns:
         About +z, with density cos / pi.
     positions : (PATTERNS, r, 3) float32
         (1, u, v) with the barycentric weights of corners 1 and 2.
+    chances : (r,) float
+        By which rays go on through what lets a part of the light through.
     shares : (r,) float
         Where the rays leave a cluster, as shares of its triangles' area laid end to end: evenly spread, and by another
         sequence than the directions, or the two would go together.
@@ -166,6 +174,7 @@ class Patterns:
 
     directions: Singles
     positions: Singles
+    chances: Floats
     shares: Floats
 
     @staticmethod
@@ -177,7 +186,7 @@ class Patterns:
         weights = triangle_weights(points[..., :2])
         positions = np.concatenate([np.ones((*weights.shape[:2], 1)), weights], axis=-1)
         directions = hemisphere(points[..., 2:]).astype(np.float32)
-        return Patterns(directions, positions.astype(np.float32), radical_inverse(first, count))
+        return Patterns(directions, positions.astype(np.float32), chances(first, count), radical_inverse(first, count))
 
     def choose(self, keys: Ints, seed: int) -> tuple[Ints, Floats]:
         """The pattern of each receiver and the angle it is turned by, both (n,)."""

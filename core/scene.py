@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Rec. 709 luminance of linear RGB."""
+
 
 @dataclass(frozen=True, eq=False)
 class Texture:
@@ -84,6 +87,11 @@ class SurfaceMesh:
         Of the triangles over which they vary, in place of what is above.
     clear : (t,) bool or None
         Triangles that light goes through as if they were not there.
+    transmittance : (t, 3) float, 0..1, or None
+        Share of the light that goes straight through each triangle, linear RGB. Reflectance and emission are what it
+        leaves, as means over holes and all.
+    transmittance_texture : Texture or None
+        Of the triangles over which it varies.
     front_only : (t,) bool or None
         Triangles whose back does not emit.
     linking : LightLinking
@@ -102,6 +110,8 @@ class SurfaceMesh:
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
     clear: NDArray[np.bool_] | None = None
+    transmittance: Floats | None = None
+    transmittance_texture: Texture | None = None
     front_only: NDArray[np.bool_] | None = None
     linking: LightLinking = UNLINKED
 

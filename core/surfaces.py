@@ -15,6 +15,7 @@ from .geometry import lengths, normalized, triangle_areas, triangle_cross, trian
 from .limits import LARGEST_COORDINATE, lamp_warnings, light_warnings, sound_lamp, sound_light
 from .scene import Floats, Ints, Lamp, LightLinking, Scene, SurfaceMesh, Texture
 from .textures import joined, mean_colours, with_means
+from .transmittance import Transmittance, of_opaque, transmittance_of
 
 SMALLEST_AREA = 1e-14
 """Triangles with less than this share of the squared extent of the scene have no area that float32 rays could meet."""
@@ -53,6 +54,8 @@ class Surfaces:
     baked : (t,) bool
     seen, shadow : (t,) bool
         Whether reflected light meets it, and whether it hides lamps and emitters.
+    transmittance : Transmittance or None
+        What goes straight through triangles; None where nothing does.
     front_only : (t,) bool
         Whether only the front emits.
     linking : tuple of LightLinking
@@ -86,6 +89,7 @@ class Surfaces:
     baked: NDArray[np.bool_]
     seen: NDArray[np.bool_]
     shadow: NDArray[np.bool_]
+    transmittance: Transmittance | None
     front_only: NDArray[np.bool_]
     linking: tuple[LightLinking, ...]
     extent: float
@@ -132,6 +136,24 @@ class Surfaces:
     def emission_over(self, triangle: Ints, corners: Floats) -> Floats:
         """Mean emission over parts of triangles, (n, 3), as `reflectance_over`."""
         return mean_colours(self.emission, self.emission_texture, triangle, corners)
+
+    def opaque_reflectance_over(self, triangle: Ints, corners: Floats) -> Floats:
+        """Mean reflectance of what is opaque of parts of triangles, which rays meet, (n, 3), as `reflectance_over`."""
+        reflectance = self.reflectance_over(triangle, corners)
+        if self.transmittance is None:
+            return reflectance
+        return np.minimum(of_opaque(reflectance, self.transmittance.opacity_over(triangle, corners)), 1.0)
+
+    def vary(self, triangle: Ints) -> NDArray[np.bool_]:
+        """Whether the reflectance that rays meet on triangles (n,) is not that of the whole triangle, (n,)."""
+        some = self.is_partly_clear()
+        if self.reflectance_texture is not None:
+            some[self.reflectance_texture.triangle] = True
+        return some[triangle]
+
+    def is_partly_clear(self) -> NDArray[np.bool_]:
+        """Triangles that let a part of the light through, (t,)."""
+        return np.zeros(len(self.triangles), bool) if self.transmittance is None else self.transmittance.some.copy()
 
     def recoloured(self, scene: Scene) -> Surfaces:
         """The same triangles, with the colours that they have in `scene`, whose meshes have the same shapes."""
@@ -192,6 +214,7 @@ def join(scene: Scene) -> Surfaces:
         baked=flags[:, 0],
         seen=flags[:, 1] & opaque,
         shadow=flags[:, 2] & opaque,
+        transmittance=transmittance_of(scene.meshes, kept),
         front_only=_marked([mesh.front_only for mesh in scene.meshes], kept),
         linking=tuple(mesh.linking for mesh in scene.meshes),
         extent=extent,

@@ -102,12 +102,12 @@ def mean_colours(
         for begin in range(0, len(same), size):
             some = same[begin : begin + size]
             at = np.einsum("pk,nkx->npx", points, parts[some, :, 1:])
-            cell = first[which[some], None] + _cell_at(texture.along[which[some], None], at[..., 0], at[..., 1])
+            cell = first[which[some], None] + cell_at(texture.along[which[some], None], at[..., 0], at[..., 1])
             result[chosen[some]] = texture.colours[cell].mean(axis=1, dtype=np.float64)
     return result
 
 
-def _cell_at(along: Ints, u: Floats, v: Floats) -> Ints:
+def cell_at(along: Ints, u: Floats, v: Floats) -> Ints:
     """Number within its triangle of the cell at barycentric weights of corners 1 and 2."""
     inside = along * (1.0 - 1e-9)
     u, v = np.clip(u, 0.0, 1.0) * inside, np.clip(v, 0.0, 1.0) * inside

@@ -169,7 +169,10 @@ class Transport:
                 origins[clustered], directions[clustered] = self._leaving_clusters(
                     part[clustered], patterns, pattern[clustered], angle[clustered]
                 )
-            hits, root, weights, distance = self.look(origins.reshape(-1, 3), directions.reshape(-1, 3))
+            chances = shifted(patterns.chances[:, None], hashed(part, 1, self.seed + 72)).astype(np.float32)
+            hits, root, weights, distance = self.look(
+                origins.reshape(-1, 3), directions.reshape(-1, 3), chances.ravel()
+            )
             hits = hits.reshape(-1, count)
             return Rows(
                 part,
@@ -206,9 +209,9 @@ class Transport:
         return self.rays.local(a), ((b - a) * scale).astype(np.float32), ((c - a) * scale).astype(np.float32)
 
     def look(
-        self, origins: Singles, directions: Singles
+        self, origins: Singles, directions: Singles, chances: Singles | None = None
     ) -> tuple[NDArray[np.int32], NDArray[np.int32], Singles, Singles]:
-        """Trace rays (n, 3) in the ray library's coordinates.
+        """Trace rays (n, 3) in the ray library's coordinates; `chances` as `RayScene.first_hits` takes them.
 
         Returns
         -------
@@ -219,7 +222,7 @@ class Transport:
         weights : (n, 2) float32
         distance : (n,) float32
         """
-        found = self.rays.first_hits(origins, directions)
+        found = self.rays.first_hits(origins, directions, chances)
         missed = found.triangle < 0
         triangle = np.maximum(found.triangle, 0)
         weights = found.weights()

@@ -15,13 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import RayLibraryError
+from .sampling import Singles
 from .scene import Floats, Ints
+from .transmittance import Transmittance
 from .workers import Workers
 
 OFFSET = 2e-6
 """Distance by which rays start off their surface, in units of the scene's largest extent. Coordinates are centred and
 scaled to [-0.5, 0.5], where neighbouring float32 differ by 6e-8 at most: 33 of these steps, well above the few that an
 intersection is off by, and below a gap of 0.1 mm in a scene of 50 m."""
+
+
+FAINTEST = np.float32(1e-4)
+"""Share of the light below which what comes through many sheets counts as nothing."""
+
+MOST_SHEETS = 256
+"""Surfaces that let some of the light through, which a ray goes on behind at most."""
 
 
 @cache
@@ -98,6 +107,14 @@ class _Triangles:
         return known
 
 
+@dataclass(frozen=True, eq=False)
+class _Blockers:
+    """What hides things: triangles that do so wholly, and those that let some of the light through, if any do."""
+
+    opaque: _Triangles
+    sheets: _Triangles | None
+
+
 class RayScene:
     """Triangles that rays can be traced against, from several threads.
 
@@ -111,6 +128,8 @@ class RayScene:
         Triangles that `first_hits` meets, and those that hide things in `visible`; None for all.
     blockers : dict of (t,) bool, or None
         Other triangles that hide what is asked of `hidden_by`, by the numbers of their meshes.
+    transmittance : Transmittance or None
+        What goes through triangles.
 
     Attributes
     ----------
@@ -131,6 +150,7 @@ class RayScene:
         seen: NDArray[np.bool_] | None = None,
         shadow: NDArray[np.bool_] | None = None,
         blockers: dict[frozenset[int], NDArray[np.bool_]] | None = None,
+        transmittance: Transmittance | None = None,
     ) -> None:
         self.workers = Workers(threads)
         used = points[triangles.ravel()]
@@ -142,13 +162,21 @@ class RayScene:
         self.seconds = 0.0
         self._counting = threading.Lock()
         chosen = [np.ones(len(triangles), dtype=bool) if mask is None else mask for mask in (seen, shadow)]
-        self._of_seen = self._of_shadow = _Triangles(self.local(points), triangles, chosen[0])
-        if (chosen[0] != chosen[1]).any():
-            self._of_shadow = _Triangles(self.local(points), triangles, chosen[1])
+        self.transmittance = transmittance
+        self._of_seen = _Triangles(self.local(points), triangles, chosen[0])
+
+        def blocking(mask: NDArray[np.bool_]) -> _Blockers:
+            through = mask & (transmittance.some if transmittance is not None else False)
+            wholly = mask & ~through
+            same = (wholly == chosen[0]).all()
+            return _Blockers(
+                self._of_seen if same else _Triangles(self.local(points), triangles, wholly),
+                _Triangles(self.local(points), triangles, through) if through.any() else None,
+            )
+
+        self._of_shadow = blocking(chosen[1])
         self._whole: RayScene | None = None
-        self._of_blockers = {
-            which: _Triangles(self.local(points), triangles, mask) for which, mask in (blockers or {}).items()
-        }
+        self._of_blockers = {which: blocking(mask) for which, mask in (blockers or {}).items()}
 
     def hidden_by(self, blockers: frozenset[int] | None) -> RayScene:
         """The same scene, in which these meshes alone hide things in `visible`; None for all that throw shadows."""
@@ -178,11 +206,52 @@ class RayScene:
             whole.rays += len(origins)
         return answer
 
-    def first_hits(self, origins: NDArray[np.float32], directions: NDArray[np.float32]) -> Hits:
-        """Trace rays (n, 3) from origins in local coordinates, lifted off their surface by `OFFSET`."""
+    def first_hits(
+        self, origins: NDArray[np.float32], directions: NDArray[np.float32], chances: Singles | None = None
+    ) -> Hits:
+        """Trace rays (n, 3) from origins in local coordinates, lifted off their surface by `OFFSET`.
+
+        Parameters
+        ----------
+        chances : (n,) float32, 0..1, or None
+            Of each ray: it goes on through what lets a larger share of the light through. None has them go through what
+            is more clear than opaque.
+        """
+        hits, normals = self._first_hits(origins, directions)
+        if self.transmittance is not None:
+            left = np.full(len(origins), 0.5, dtype=np.float32) if chances is None else chances.copy()
+            self._go_on(hits, normals, origins, directions, left)
+        return hits
+
+    def _first_hits(self, origins: Singles, directions: Singles) -> tuple[Hits, Singles]:
+        """What rays meet, and the normals there, (n, 3), of any length."""
         answer = self._run(self._of_seen, origins, directions, query="INTERSECT", output=True)
         back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
-        return Hits(self._of_seen.number(answer["primID"]), answer["u"], answer["v"], answer["tfar"], back)
+        hits = Hits(self._of_seen.number(answer["primID"]), answer["u"], answer["v"], answer["tfar"], back)
+        return hits, answer["Ng"]
+
+    def _go_on(self, hits: Hits, normals: Singles, origins: Singles, directions: Singles, chances: Singles) -> None:
+        """Put in place of hits that let a ray through what it meets behind; `chances` are used up."""
+        assert self.transmittance is not None
+        rows = np.flatnonzero(hits.triangle >= 0)
+        normals = normals[rows]
+        for _ in range(MOST_SHEETS):
+            on = np.flatnonzero(self.transmittance.some[hits.triangle[rows]])
+            rows, normals = rows[on], normals[on]
+            share = self.transmittance.at(hits.triangle[rows], hits.u[rows], hits.v[rows])
+            on = np.flatnonzero(chances[rows] < share)
+            if len(on) == 0:
+                return
+            rows, normals, share = rows[on], normals[on], share[on]
+            # What is left of a number below the share is as evenly spread as the number was.
+            chances[rows] /= share
+            way = directions[rows]
+            behind, normals = self._first_hits(_beyond(origins[rows], way, hits.distance[rows], normals), way)
+            hits.distance[rows] += behind.distance
+            for name in ("triangle", "u", "v", "back"):
+                getattr(hits, name)[rows] = getattr(behind, name)
+            on = np.flatnonzero(behind.triangle >= 0)
+            rows, normals = rows[on], normals[on]
 
     def lifted(self, points: Floats, normals: Floats) -> tuple[NDArray[np.float32], Floats]:
         """Where rays start that leave a surface at points (n, 3) on the side of its normals.
@@ -198,8 +267,12 @@ class RayScene:
         origins = (exact + normals * OFFSET).astype(np.float32)
         return origins, exact - origins
 
-    def visible(self, origins: NDArray[np.float32], toward: NDArray[np.float32]) -> NDArray[np.bool_]:
+    def visible(
+        self, origins: NDArray[np.float32], toward: NDArray[np.float32]
+    ) -> NDArray[np.bool_] | NDArray[np.float32]:
         """Whether nothing lies between origins and targets, both lifted off their surfaces, (n, r) bool.
+
+        Where something lets a part of the light through, the share that arrives, (n, r) float32.
 
         Parameters
         ----------
@@ -211,6 +284,50 @@ class RayScene:
         # The ray library counts in lengths of the direction.
         ends = np.ones(len(starts), dtype=np.float32)
         answer: NDArray[np.int32] = self._run(
-            self._of_shadow, starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED"
+            self._of_shadow.opaque, starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED"
         )
-        return answer.reshape(toward.shape[:2]) < 0
+        clear = answer.reshape(toward.shape[:2]) < 0
+        if self._of_shadow.sheets is None:
+            return clear
+        return self._through(self._of_shadow.sheets, starts, toward.reshape(-1, 3), clear.ravel()).reshape(clear.shape)
+
+    def _through(
+        self, sheets: _Triangles, origins: Singles, directions: Singles, clear: NDArray[np.bool_]
+    ) -> NDArray[np.float32]:
+        """The share of the light that comes through sheets along those of the rays (n,) that are else clear."""
+        assert self.transmittance is not None
+        result = clear.astype(np.float32)
+        rows = np.flatnonzero(clear)
+        starts, way, gone = origins[rows], directions[rows], np.zeros(len(rows), dtype=np.float32)
+        for _ in range(MOST_SHEETS):
+            answer = self._run(sheets, starts, way, dists=1.0 - gone, query="INTERSECT", output=True)
+            on = np.flatnonzero(answer["primID"] >= 0)
+            met = sheets.number(answer["primID"][on])
+            result[rows[on]] *= self.transmittance.at(met, answer["u"][on], answer["v"][on])
+            kept = result[rows[on]] > FAINTEST
+            result[rows[on[~kept]]] = 0.0
+            on = on[kept]
+            if len(on) == 0:
+                break
+            starts = _beyond(starts[on], way[on], answer["tfar"][on], answer["Ng"][on])
+            gone = np.minimum(gone[on] + answer["tfar"][on], np.float32(1.0))
+            rows, way = rows[on], way[on]
+        return result
+
+
+def spread_of_rays(seen: NDArray[np.bool_] | NDArray[np.float32], share: Floats) -> Floats:
+    """Variance of what rays (n, r) to one light say of it, whose mean is `share`, (n,).
+
+    Behind a curtain all say the same, half of the light: there is nothing to be in doubt of.
+    """
+    spread: Floats = share * (1.0 - share) if seen.dtype == bool else seen.var(axis=1, dtype=np.float64)
+    return spread
+
+
+def _beyond(origins: Singles, directions: Singles, distance: Singles, normals: Singles) -> Singles:
+    """Where rays (n, 3) go on behind what they met, off it by `OFFSET`."""
+    side = np.einsum("nx,nx->n", directions, normals)
+    length = np.sqrt(np.einsum("nx,nx->n", normals, normals))
+    lift = np.copysign(np.float32(OFFSET), side) / np.maximum(length, np.finfo(np.float32).tiny)
+    result: Singles = origins + directions * distance[:, None] + normals * lift[:, None]
+    return result

@@ -291,4 +291,5 @@ def _is_clear(rays: RayScene, start: Floats, end: Floats) -> NDArray[np.bool_]:
     """Whether nothing lies between places off all surfaces, (n, 3) each."""
     origins = rays.local(start)
     toward = rays.local(end) - origins
-    return rays.visible(origins, toward[:, None])[:, 0]
+    clear: NDArray[np.bool_] = rays.visible(origins, toward[:, None])[:, 0] > 0
+    return clear

@@ -38,6 +38,8 @@ class Appearance:
     ----------
     reflectance, emission : (t, 3) float
     reflectance_texture, emission_texture : Texture or None
+    transmittance : (t, 3) float or None
+    transmittance_texture : Texture or None
     clear, front_only : (t,) bool or None
     """
 
@@ -45,6 +47,8 @@ class Appearance:
     emission: Floats
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
+    transmittance: Floats | None = None
+    transmittance_texture: Texture | None = None
     clear: np.ndarray | None = None
     front_only: np.ndarray | None = None
 
@@ -211,16 +215,17 @@ def appearance_of(
         marks = np.array([getattr(surface, name) for surface in surfaces])
         if marks.any():
             colours[name] = marks[slot_of_triangle]
-    for name in ("reflectance", "emission"):
-        values = [getattr(surface, name) for surface in surfaces]
+    for name, source in (("reflectance", "reflectance"), ("emission", "emission"), ("transmittance", "through")):
+        values = [getattr(surface, source) for surface in surfaces]
         constants = np.array([np.zeros(3) if varies(value) else value for value in values])
-        colours[name] = constants[slot_of_triangle]
+        if name != "transmittance" or constants.any() or varies(*values):
+            colours[name] = constants[slot_of_triangle]
         parts = []
-        if evaluation is not None:
+        if evaluation is not None and name != "transmittance":
             triangle = evaluation.triangle
             parts.append(Texture(triangle, slot_of_triangle[triangle], along[triangle], getattr(evaluation, name)))
         for slot, value in enumerate(values):
-            triangle = np.flatnonzero((slot_of_triangle == slot) & ~evaluated)
+            triangle = np.flatnonzero((slot_of_triangle == slot) & (~evaluated | (name == "transmittance")))
             if varies(value) and len(triangle):
                 cells = _cells(value, attributes, triangle, along[triangle])
                 parts.append(Texture(triangle, np.full(len(triangle), slot), along[triangle], cells))

@@ -502,6 +502,8 @@ class _Reader:
                 reflectance_texture=appearance.reflectance_texture,
                 emission_texture=appearance.emission_texture,
                 clear=appearance.clear,
+                transmittance=appearance.transmittance,
+                transmittance_texture=appearance.transmittance_texture,
                 front_only=appearance.front_only,
                 baked=owner is not None,
                 seen=role.seen,

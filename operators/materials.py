@@ -7,7 +7,7 @@ node is named, for Blender to evaluate it.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import bpy
 import numpy as np
@@ -56,8 +56,10 @@ class Surface:
         Emitted radiance, linear RGB.
     notes : tuple of str
         What was skipped or guessed, each a clause to follow the material's name and a colon.
+    through : (3,) float or Varying, 0..1
+        Share of the light that goes straight through it, linear RGB.
     clear : bool
-        Whether light goes through it as if it were not there.
+        Whether all of it does, as if it were not there.
     front_only : bool
         Whether it emits from its front alone.
     unread : tuple of str
@@ -68,12 +70,13 @@ class Surface:
     emission: Colour | Varying
     notes: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
+    through: Colour | Varying = field(default_factory=lambda: np.zeros(3))
     clear: bool = False
     front_only: bool = False
 
-    def colours(self) -> tuple[Colour | Varying, Colour | Varying]:
-        """Return both."""
-        return self.reflectance, self.emission
+    def colours(self) -> tuple[Colour | Varying, ...]:
+        """Return all three."""
+        return self.reflectance, self.emission, self.through
 
 
 def _surface(
@@ -81,14 +84,17 @@ def _surface(
     emission: object = 0.0,
     notes: Iterable[str] = (),
     unread: Iterable[str] = (),
-    clear: bool = False,
+    through: object = 0.0,
 ) -> Surface:
     def colour(value: object) -> Colour | Varying:
         if isinstance(value, Varying):
             return value
         return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (3,)))
 
-    return Surface(colour(reflectance), colour(emission), tuple(notes), tuple(unread), clear)
+    clear = not varies(through) and bool(np.all(np.asarray(through) >= _CLEAR))
+    return Surface(
+        colour(reflectance), colour(emission), tuple(notes), tuple(unread), colour(0.0 if clear else through), clear
+    )
 
 
 def uses_nodes(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) -> bool:
@@ -183,13 +189,14 @@ class _ShaderReader:
         if output is None:
             return _surface()
         reflectance, emission, through = self._shader(_input(output, "Surface"), ())
-        clear = not varies(through) and bool(np.all(through >= _CLEAR))
-        if not clear and (varies(through) or np.any(through > 0.0)):
-            self.notes.append("it is transparent in part, but lets no light through")
+        if not varies(through):
+            through = np.clip(through, 0.0, 1.0)
+            if np.ptp(through) > _TINTED:
+                self.notes.append("the tint of what it lets through is left out")
         if not varies(emission) and np.any(emission < 0.0):
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
-        return _surface(reflectance, emission, dict.fromkeys(self.notes), dict.fromkeys(self.unread), clear)
+        return _surface(reflectance, emission, dict.fromkeys(self.notes), dict.fromkeys(self.unread), through)
 
     def _shader(self, socket, groups) -> tuple[Value, Value, Value]:
         """Return reflectance, emission and what is let through by whatever is linked to a shader socket.
@@ -456,6 +463,9 @@ _BLENDS = {
 
 _CLEAR = 0.999
 """Share of the light that is let through from which on a material counts as not being there."""
+
+_TINTED = 0.01
+"""Difference between the channels of what is let through from which on it has a tint."""
 
 _STRETCHED = 4.0
 """Times that an image may be stretched until the longer way decides how much of it is averaged."""

@@ -9,6 +9,7 @@ other nodes that colours come from stay as they are.
 from dataclasses import dataclass, replace
 
 import bpy
+import numpy as np
 
 from . import display
 from .attributes import IRRADIANCE, Attributes
@@ -69,7 +70,8 @@ class Displays:
             return settings.material == "TEXTURED"
         if original not in self._has_textures:
             surface = material_surface(original)
-            self._has_textures[original] = bool(surface.unread) or varies(*surface.colours())
+            # What is seen through it, one colour for each vertex would hide.
+            self._has_textures[original] = bool(surface.unread or varies(*surface.colours()) or np.any(surface.through))
         # Lighting alone is asked for to be seen without colours.
         return self._has_textures[original] and settings.light != "IRRADIANCE"
 

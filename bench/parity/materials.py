@@ -13,6 +13,8 @@ import numpy as np
 from . import stage
 from .cases import case
 
+PALE = (0.8, 0.7, 0.5)
+
 
 @case("Closed room with coloured walls")
 def closed_room() -> list[Any]:
@@ -135,6 +137,72 @@ def transparent_sheet() -> list[Any]:
     air = stage.material("Air", "ShaderNodeBsdfTransparent")
     stage.grid("Sheet", 2.5, 2.5, 2, air, location=(0.0, 0.0, 0.4))
     stage.lamp("AREA", shape="DISK", size=0.5)
+    return [floor]
+
+
+@case("A curtain of alpha 0.5 between a lamp and the floor")
+def curtain() -> list[Any]:
+    """Half of the light goes through it, from the lamp and from the wall, and it reflects some of the rest."""
+    floor = stage.room()
+    cloth = stage.material("Cloth", "ShaderNodeBsdfPrincipled", Base_Color=PALE, Alpha=0.5, Specular_IOR_Level=0.0)
+    stage.grid("Curtain", 2.5, 2.5, 2, cloth, location=(0.0, 0.0, 0.9))
+    stage.lamp("AREA", shape="DISK", size=0.5)
+    return [floor]
+
+
+@case("The curtain itself, lit from behind", quantity="Radiosity")
+def curtain_itself() -> list[Any]:
+    """What the half of it that is cloth reflects."""
+    floor = stage.room()
+    cloth = stage.material("Cloth", "ShaderNodeBsdfPrincipled", Base_Color=PALE, Alpha=0.5, Specular_IOR_Level=0.0)
+    hung = stage.grid("Curtain", 1.5, 1.5, 6, cloth, location=(0.2, 0.0, 0.9), rotation=(0.0, 1.2, 0.0))
+    stage.lamp("AREA", shape="DISK", size=0.5)
+    del floor
+    return [hung]
+
+
+def leaf(size: int = 64) -> Any:
+    """Return an image of a green leaf with five lobes, clear around it."""
+    image = bpy.data.images.new("Leaf", size, size, alpha=True)
+    x, y = np.meshgrid(*[(np.arange(size) + 0.5) / size * 2.0 - 1.0] * 2)
+    pixels = np.empty((size, size, 4), dtype=np.float32)
+    pixels[...] = (0.2, 0.6, 0.15, 1.0)
+    pixels[..., 3] = np.hypot(x, y) < 0.6 + 0.3 * np.cos(5.0 * np.arctan2(y, x))
+    image.pixels.foreach_set(pixels.reshape(-1))
+    return image
+
+
+@case("A leaf that a texture's alpha cuts out of its card")
+def leaf_card() -> list[Any]:
+    """The shadow of the leaf and not of the card."""
+    floor = stage.room()
+    bpy.data.objects.remove(bpy.data.objects["Board"])
+    made = bpy.data.materials.new("Leaf")
+    tree = stage.node_tree(made)
+    node = stage.shader(tree, "ShaderNodeBsdfPrincipled", Specular_IOR_Level=0.0)
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = leaf()
+    tree.links.new(texture.outputs["Color"], node.inputs["Base Color"])
+    tree.links.new(texture.outputs["Alpha"], node.inputs["Alpha"])
+    stage.show(tree, node)
+    stage.grid("Card", 1.2, 1.2, 1, made, location=(0.0, 0.0, 0.6), rotation=(0.3, 0.2, 0.0))
+    stage.lamp("AREA", shape="DISK", size=0.2)
+    return [floor]
+
+
+@case("A window of half-clear glass in a closed room", samples=2048)
+def half_clear_window() -> list[Any]:
+    """Light comes into the room through a Mix of Transparent and Diffuse alone, from the sky and by many bounces."""
+    floor = stage.closed_room()
+    made = bpy.data.materials.new("Smoked")
+    tree = stage.node_tree(made)
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    mix.inputs[0].default_value = 0.4
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=PALE).outputs[0], mix.inputs[2])
+    stage.show(tree, mix)
+    bpy.data.objects["Ceiling"].data.materials[0] = made
+    stage.world(strength=2.0)
     return [floor]
 
 

@@ -195,15 +195,21 @@ def test_a_negative_emission_counts_as_none_and_is_named(strength):
     assert surface.notes == ("its emission is negative; it was taken for zero",)
 
 
-def test_a_transparent_material_lets_light_through_and_one_in_part_does_not():
+def test_a_transparent_material_lets_light_through_and_one_in_part_a_part_of_it():
     veil = principled(Alpha=0.0)
     assert_surface(veil, 0.0)
     assert material_surface(veil).clear
     assert material_surface(node_material("Air", "ShaderNodeBsdfTransparent")).clear
     half = principled(Base_Color=(0.8, 0.4, 0.2, 1.0), Alpha=0.5)
-    (note,) = assert_surface(half, (0.4, 0.2, 0.1))
-    assert "transparent in part" in note
-    assert not material_surface(half).clear
+    assert assert_surface(half, (0.4, 0.2, 0.1)) == ()
+    surface = material_surface(half)
+    assert surface.through == pytest.approx(np.full(3, 0.5)) and not surface.clear
+
+
+def test_of_tinted_glass_it_is_said_that_the_tint_is_left_out():
+    (note,) = assert_surface(node_material("Pane", "ShaderNodeBsdfTransparent", Color=(0.9, 0.2, 0.2, 1.0)), 0.0)
+    assert "tint" in note
+    assert material_surface(node_material("Smoke", "ShaderNodeBsdfTransparent", Color=(0.5, 0.5, 0.5, 1.0))).notes == ()
 
 
 def sided_material(front, back):

@@ -246,6 +246,25 @@ def test_a_transparent_image_darkens_its_colours_unless_its_alpha_is_linked():
     assert_as_in_cycles(material, "EMIT")
 
 
+def test_a_leaf_is_cut_out_by_the_alpha_of_its_image():
+    image = bpy.data.images.new("Leaf", 8, 8, alpha=True)
+    pixels = np.ones((8, 8, 4), dtype=np.float32)
+    pixels[:, 4:, 3] = 0.0
+    image.pixels.foreach_set(pixels.reshape(-1))
+    material = node_material("Leaf", "ShaderNodeBsdfPrincipled")
+    tree = material.node_tree
+    node = image_node(tree, image, interpolation="Closest")
+    tree.links.new(node.node.outputs["Alpha"], shader_of(material).inputs["Alpha"])
+    sheet = add_sheet(material, cells=1)
+    bpy.context.view_layer.update()
+    extraction = extract(bpy.context, [sheet])
+    (mesh,), texture = extraction.scene.meshes, extraction.scene.meshes[0].transmittance_texture
+    assert mesh.clear is None and not extraction.warnings
+    # Of a UV map that runs once over the sheet, half of it is a hole; cells at its border are in part.
+    assert texture.colours.mean() == pytest.approx(0.5, abs=0.02)
+    assert ((texture.colours < 0.01) | (texture.colours > 0.99)).mean() > 0.9
+
+
 def test_mirrored_objects_keep_their_texture_where_it_is():
     sheet = add_sheet(painted(image_node))
     before, _ = by_us(sheet, "DIFFUSE")
