@@ -16,6 +16,7 @@ from . import refinement
 from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
 from .clock import Clock
+from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
 from .detail import FaceSizes, counted_share_of_triangles, light_up, light_up_in_detail
 from .direct import all_emitters
@@ -82,6 +83,10 @@ ball only slivers at its poles seem to, and of a terrain what lies in its folds.
 LARGEST_PATCH = 1.0 / 16.0
 """Share of the area that the sizes are made for, which a patch counts for at most. Where no ground is wide none is
 larger."""
+
+LEAST_CROSSED = 1.0 / 8.0
+"""Of triangles smaller than patches, those that are smaller than so much of their size stay whole where a sheet passes
+through them."""
 
 FINER_CUTS = 4.0
 """Times smaller still where the outline of another object crosses them."""
@@ -326,7 +331,9 @@ def subdivided(
     while True:
         clock.start("Coarse patches", 0.02, 0.03)
         smallest, _ = minimum_sizes(surfaces, settings, effort, area)
-        tree = clustered_patches(surfaces, min(smallest, automatic_size(area, effort)))
+        least = min(smallest, automatic_size(area, effort))
+        lines = find_crossings(surfaces, lit, (least * LEAST_CROSSED) ** 2)
+        tree = clustered_patches(surfaces, least, lines)
         per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
         transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
         clock.start("Form factors", 0.03, 0.4)

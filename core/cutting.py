@@ -434,6 +434,7 @@ def _cuts_of_faces(faces: Faces, of_corner: Ints, cuts: CutEdges) -> tuple[Faces
         np.concatenate([faces.places, np.arange(len(faces.points), len(faces.points) + len(made))]),
         np.concatenate([faces.mesh_of_point, faces.mesh_of_point[a]]),
         faces.corners,
+        faces.vertices,
         faces.triangle,
         faces.weights,
         faces.node,
@@ -528,11 +529,14 @@ def cut_faces(
     cut, of_start = own[member[at], edge], unseen[member[at], start[member[at], edge]] == piece_hidden[at]
     new_values[at, vertex] = np.where(of_start[:, None], seen_value[cut], hidden_value[cut])
     weights = _at_corners_of_pieces(faces.weights, member, on_face.share, member, piece)
+    corners = six[row, piece]
     new = Faces(
         faces.points,
         faces.places,
         faces.mesh_of_point,
-        six[row, piece],
+        corners,
+        # All light has been gathered: none asks for them any more.
+        faces.places[corners],
         faces.triangle[member],
         weights,
         faces.node[member],

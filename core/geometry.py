@@ -38,6 +38,17 @@ def triangle_areas(corners: Floats) -> Floats:
     return lengths(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2.0
 
 
+def weights_in(triangles: Floats, points: Floats) -> Floats:
+    """Barycentric coordinates of points (n, k, 3) in triangles (n, 3, 3), (n, k, 3)."""
+    corner, e1, e2 = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    normal = cross(e1, e2)
+    square = np.einsum("nx,nx->n", normal, normal)[:, None]
+    way = points - corner[:, None]
+    b = np.einsum("nkx,nx->nk", way, cross(e2, normal)) / square
+    c = np.einsum("nkx,nx->nk", way, cross(normal, e1)) / square
+    return np.stack([1.0 - b - c, b, c], axis=-1)
+
+
 def normalized(vectors: Floats) -> Floats:
     """Vectors of length 1 along the last axis; the zero vector stays zero."""
     length = lengths(vectors)

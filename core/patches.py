@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .clusters import Clusters, cluster_triangles
-from .geometry import edge_lengths, largest_edges, normalized, triangle_areas, triangle_cross
+from .crossings import Crossings
+from .geometry import edge_lengths, largest_edges, normalized, triangle_areas, triangle_cross, weights_in
 from .sampling import frames
 from .scene import Floats, Ints
+from .seams import Seams, cut_along
 from .surfaces import Surfaces
 
 FOUR = 3
@@ -51,10 +53,12 @@ class PatchTree:
     first_child : (n,) int
         -1 for a leaf.
     kind : (n,) int
-        How the node is split (`FOUR` or the halved edge).
+        How the node is split (`FOUR` or the edge that is cut).
+    share : (n,) float
+        Where that edge is cut, from its first corner.
     root : (n,) int
-        The coarse patch each node was split from by midpoints; -1 for triangles that were halved into coarse patches,
-        and a member for clusters, which are none.
+        The coarse patch each node was split from by midpoints; -1 for triangles that were cut into coarse patches, and
+        a member for clusters, which are none.
     level : (n,) int
         Splits by midpoints below its coarse patch.
     patch : (n,) int
@@ -62,6 +66,8 @@ class PatchTree:
     clusters : Clusters
         Their members are nodes; they are nodes themselves, from `first_cluster` on. Their corners are those of a right
         isosceles triangle that is as large, at the same place, and their triangle is a typical one of theirs.
+    seams : Seams
+        Edges that sheets pass through or stand on.
     """
 
     def __init__(self, surfaces: Surfaces) -> None:
@@ -75,11 +81,13 @@ class PatchTree:
         self.weights: Floats = np.broadcast_to(np.eye(3), (count, 3, 3)).copy()
         self.first_child: Ints = np.full(count, -1, dtype=np.int64)
         self.kind: NDArray[np.int8] = np.full(count, FOUR, dtype=np.int8)
+        self.share: Floats = np.full(count, 0.5)
         self.root: Ints = np.arange(count, dtype=np.int64)
         self.level: Ints = np.zeros(count, dtype=np.int64)
         self.patch: Ints = np.arange(count, dtype=np.int64)
         self.clusters = Clusters.none()
         self.first_cluster = 0
+        self.seams = Seams.none()
         self._edge_keys: Ints = np.zeros(0, dtype=np.int64)
         self._edge_midpoints: Ints = np.zeros(0, dtype=np.int64)
 
@@ -92,6 +100,7 @@ class PatchTree:
         other.__dict__.update(self.__dict__)
         other.first_child = self.first_child.copy()
         other.kind = self.kind.copy()
+        other.share = self.share.copy()
         other.root = self.root.copy()
         other.patch = self.patch.copy()
         return other
@@ -181,6 +190,7 @@ class PatchTree:
         self.weights = np.concatenate([self.weights, self.weights[example]])
         self.first_child = np.concatenate([self.first_child, np.full(count, -1, dtype=np.int64)])
         self.kind = np.concatenate([self.kind, np.full(count, FOUR, dtype=np.int8)])
+        self.share = np.concatenate([self.share, np.full(count, 0.5)])
         self.root = np.concatenate([self.root, self.root[example]])
         self.level = np.concatenate([self.level, np.zeros(count, dtype=np.int64)])
         self.patch = np.concatenate([self.patch, np.full(count, -1, dtype=np.int64)])
@@ -203,15 +213,35 @@ class PatchTree:
         self.patch[self.clusters.members_of(clusters)] = np.repeat(node, self.clusters.count[clusters])
 
     def ancestors(self, count: int) -> Ints:
-        """The one of the first `count` nodes that each node is, or was split from, (n,)."""
+        """The one of the first `count` nodes that each node is, or was split from, (n,); later clusters: themselves."""
         above = np.arange(len(self))
         for k in range(4):
             split = np.flatnonzero((self.first_child >= 0) & ((self.kind == FOUR) | (k < 2)))
             above[self.first_child[split] + k] = split
         above[:count] = np.arange(count)
-        while above.max(initial=-1) >= count:
-            above = above[above]
-        return above
+        while True:
+            farther = above[above]
+            if np.array_equal(farther, above):
+                return above
+            above = farther
+
+    def vertices(self, corners: Ints, nodes: Ints) -> Ints:
+        """Numbers of the corners (f, 3) of faces, equal where they are at one place and on one side of all seams.
+
+        Parameters
+        ----------
+        nodes : (f,) int
+            Where the faces lie.
+        """
+        places, sides = self.place_of_point[corners], self.seams.sides
+        if sides == 1:
+            return places
+        piece = self.ancestors(len(self.seams.of_edge))[nodes]
+        near = np.flatnonzero((self.seams.of_edge[piece] | self.seams.of_corner[piece]).any(axis=1))
+        weights = weights_in(self.points[self.corners[piece[near]]], self.points[corners[near]])
+        vertices: Ints = places * sides
+        vertices[near] += self.seams.sides_at(piece[near], weights)
+        return vertices
 
     def midpoints(self, starts: Ints, ends: Ints) -> Ints:
         """The midpoint of each edge as a point index, -1 where the edge was never halved; same shape as `starts`."""
@@ -232,16 +262,27 @@ class PatchTree:
         weights = np.stack([w0, h01, h20, h01, w1, h12, h20, h12, w2, h12, h20, h01], axis=1)
         return self._add(nodes, np.full(len(nodes), FOUR, np.int8), corners, weights.reshape(-1, 3, 3), 4)
 
-    def bisect(self, nodes: Ints, edges: Ints) -> Ints:
-        """Halve one edge (0: 0-1, 1: 1-2, 2: 2-0) of each leaf; returns the children, two after two, (2 m,)."""
+    def bisect(self, nodes: Ints, edges: Ints, shares: Floats | None = None) -> Ints:
+        """Cut one edge (0: 0-1, 1: 1-2, 2: 2-0) of each leaf; returns the children, two after two, (2 m,).
+
+        Parameters
+        ----------
+        shares : (m,) float or None
+            Where, from the edge's first corner; None for the middle. An edge that has been cut is cut there again.
+        """
         row = np.arange(len(nodes))
         order = np.stack([edges, (edges + 1) % 3, (edges + 2) % 3], axis=1)
         a, b, c = self.corners[nodes[:, None], order].T
-        middle = self._halve(a, b)
+        middle = self._halve(a, b, shares)
         corners = np.stack([a, middle, c, middle, b, c], axis=1).reshape(-1, 3)
         w = self.weights[nodes][row[:, None], order]
-        half = (w[:, 0] + w[:, 1]) / 2
-        weights = np.stack([w[:, 0], half, w[:, 2], half, w[:, 1], w[:, 2]], axis=1).reshape(-1, 3, 3)
+        if shares is not None:
+            edge = self.points[b] - self.points[a]
+            found = np.einsum("mx,mx->m", self.points[middle] - self.points[a], edge)
+            self.share[nodes] = found / np.einsum("mx,mx->m", edge, edge)
+        t = self.share[nodes, None]
+        cut = w[:, 0] * (1.0 - t) + w[:, 1] * t
+        weights = np.stack([w[:, 0], cut, w[:, 2], cut, w[:, 1], w[:, 2]], axis=1).reshape(-1, 3, 3)
         return self._add(nodes, edges.astype(np.int8), corners, weights, 2)
 
     def descend(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
@@ -265,19 +306,20 @@ class PatchTree:
             child, inside = _child_of_four(w)
             halved = np.flatnonzero(self.kind[node] != FOUR)
             if len(halved):
-                child[halved], inside[halved] = _child_of_two(w[halved], self.kind[node[halved]])
+                split = node[halved]
+                child[halved], inside[halved] = _child_of_two(w[halved], self.kind[split], self.share[split])
             nodes[moving] = self.first_child[node] + child
             weights[moving] = inside
             moving = moving[self.first_child[nodes[moving]] >= 0]
         return nodes, weights
 
     def descend_halves(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
-        """As `descend`, but only through triangles that were halved, to the coarse patches."""
+        """As `descend`, but only through triangles that were cut, to the coarse patches."""
         nodes, weights = nodes.copy(), weights.copy()
         moving = np.flatnonzero(self.root[nodes] < 0)
         while len(moving):
             node = nodes[moving]
-            child, weights[moving] = _child_of_two(weights[moving], self.kind[node])
+            child, weights[moving] = _child_of_two(weights[moving], self.kind[node], self.share[node])
             nodes[moving] = self.first_child[node] + child
             moving = moving[self.root[nodes[moving]] < 0]
         return nodes, weights
@@ -290,15 +332,20 @@ class PatchTree:
         low, high = self._ordered(self.place_of_point[starts], self.place_of_point[ends])
         return (low << 32) | high
 
-    def _halve(self, starts: Ints, ends: Ints) -> Ints:
-        """Midpoints of edges, made where they do not exist."""
+    def _halve(self, starts: Ints, ends: Ints, shares: Floats | None = None) -> Ints:
+        """Midpoints of edges, or points at other shares of them, made where there is none."""
         keys = self._keys(starts, ends)
         new, first = np.unique(keys, return_index=True)
         missing = self.midpoints(starts.ravel()[first], ends.ravel()[first]) < 0
         new, first = new[missing], first[missing]
         a, b = starts.ravel()[first], ends.ravel()[first]
         made = np.arange(len(self.points), len(self.points) + len(new))
-        self.points = np.concatenate([self.points, (self.points[a] + self.points[b]) / 2.0])
+        if shares is None:
+            middles = (self.points[a] + self.points[b]) / 2.0
+        else:
+            t = shares.ravel()[first, None]
+            middles = self.points[a] * (1.0 - t) + self.points[b] * t
+        self.points = np.concatenate([self.points, middles])
         self.place_of_point = np.concatenate([self.place_of_point, made])
         self.mesh_of_point = np.concatenate([self.mesh_of_point, self.mesh_of_point[a]])
         joined = np.concatenate([self._edge_keys, new])
@@ -317,6 +364,7 @@ class PatchTree:
         self.weights = np.concatenate([self.weights, weights])
         self.first_child = np.concatenate([self.first_child, np.full(len(children), -1, dtype=np.int64)])
         self.kind = np.concatenate([self.kind, np.full(len(children), FOUR, dtype=np.int8)])
+        self.share = np.concatenate([self.share, np.full(len(children), 0.5)])
         if each == 4:
             root, level = np.repeat(self.root[nodes], each), np.repeat(self.level[nodes] + 1, each)
         else:
@@ -348,19 +396,30 @@ def _child_of_four(w: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
     return child, inside
 
 
-def _child_of_two(w: NDArray[np.float32], kind: NDArray[np.int8]) -> tuple[Ints, NDArray[np.float32]]:
-    """Which of two children a point lies in, and its weights there; `kind` is the first corner of the halved edge."""
+def _child_of_two(w: NDArray[np.float32], kind: NDArray[np.int8], share: Floats) -> tuple[Ints, NDArray[np.float32]]:
+    """Which of two children a point lies in, and its weights there.
+
+    Parameters
+    ----------
+    kind : (m,) int
+        The first corner of the edge that is cut, and
+    share : (m,) float
+        where, from there.
+    """
     full = np.stack([1.0 - w[:, 0] - w[:, 1], w[:, 0], w[:, 1]], axis=1)
     row, edge = np.arange(len(w)), kind.astype(np.int64)
     a, b, c = full[row, edge], full[row, (edge + 1) % 3], full[row, (edge + 2) % 3]
-    second = b > a
-    # Children are (a, middle, c) and (middle, b, c); the weights kept are those of corners 1 and 2.
-    inside = np.stack([np.where(second, b - a, 2.0 * b), c], axis=1)
+    t = share.astype(w.dtype)
+    second = (1.0 - t) * b > t * a
+    # Children are (a, cut, c) and (cut, b, c); the weights kept are those of corners 1 and 2.
+    inside = np.stack([np.where(second, b - a * (t / (1.0 - t)), b / t), c], axis=1)
     return second.astype(np.int64), inside.astype(w.dtype)
 
 
-def coarse_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
+def coarse_patches(surfaces: Surfaces, smallest: float, lines: Crossings | None = None) -> PatchTree:
     """The controlled triangulation: the surfaces' triangles, the slender ones halved along their longest edge.
+
+    Before, triangles are cut along the lines on which sheets cross them.
 
     Halving the longest edge never lowers the smallest angle by more than half (Rivara 1984). It ends where the pieces
     are no longer than a few times the width of the triangle they come from, so that a strip becomes a row of them, and
@@ -368,34 +427,38 @@ def coarse_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
     would be more than `MOST_PIECES`.
     """
     tree = PatchTree(surfaces)
+    if lines is not None and len(lines.triangle):
+        crossed = np.zeros(len(surfaces.closed), dtype=bool)
+        crossed[surfaces.shell_of_triangle[lines.triangle]] = True
+        cut_along(tree, lines, crossed[surfaces.shell_of_triangle])
     nodes = tree.leaves()
     longest = tree.sizes(nodes)
-    limit = _longest_pieces(surfaces, longest, smallest)
+    limit = _longest_pieces(tree.areas(nodes), longest, smallest)
     most = MOST_PIECES + PIECES_OF_EACH * len(nodes)
     if (np.maximum(longest / limit, 1.0) ** HALVING).sum() > most:
         limit = np.maximum(limit, ((longest**HALVING).sum() / most) ** (1.0 / HALVING))
     while len(nodes):
         lengths = edge_lengths(tree.points, tree.corners[nodes])
-        slender = lengths.max(axis=1, initial=0.0) > limit[tree.triangle[nodes]]
-        nodes, lengths = nodes[slender], lengths[slender]
+        slender = lengths.max(axis=1, initial=0.0) > limit
+        nodes, lengths, limit = nodes[slender], lengths[slender], np.repeat(limit[slender], 2)
         nodes = tree.bisect(nodes, lengths.argmax(axis=1))
     return tree
 
 
-def _longest_pieces(surfaces: Surfaces, longest: Floats, smallest: float) -> Floats:
-    """How long the pieces of each triangle may be, (t,), from its longest edge."""
-    width = 2.0 * surfaces.areas / np.maximum(longest, np.finfo(np.float64).tiny)
+def _longest_pieces(areas: Floats, longest: Floats, smallest: float) -> Floats:
+    """How long the pieces of each triangle may be, (t,), from its area and its longest edge."""
+    width = 2.0 * areas / np.maximum(longest, np.finfo(np.float64).tiny)
     return np.maximum(LARGEST_ASPECT * width, 4.0 * smallest)
 
 
 def coarse_count(surfaces: Surfaces, smallest: float) -> float:
     """About how many coarse patches there are: pieces of slender triangles, and triangles that clusters leave out."""
     longest = edge_lengths(surfaces.points, surfaces.triangles).max(axis=1)
-    pieces = longest / _longest_pieces(surfaces, longest, smallest)
+    pieces = longest / _longest_pieces(surfaces.areas, longest, smallest)
     return float(pieces[pieces > 1.0].sum()) + float((surfaces.areas[pieces <= 1.0] >= smallest**2).sum())
 
 
-def clustered_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
+def clustered_patches(surfaces: Surfaces, smallest: float, lines: Crossings | None = None) -> PatchTree:
     """The controlled triangulation with clusters above the triangles that are too small to be split.
 
     Parameters
@@ -403,13 +466,15 @@ def clustered_patches(surfaces: Surfaces, smallest: float) -> PatchTree:
     smallest : float, scene units
         The minimum size n. A right isosceles triangle of the size 2n, from which on patches are split, has the area
         n^2.
+    lines : Crossings or None
+        Along which sheets cross the triangles.
     """
-    tree = coarse_patches(surfaces, smallest)
+    tree = coarse_patches(surfaces, smallest, lines)
     leaves = tree.leaves()
     small = leaves[tree.areas(leaves) < smallest * smallest]
     corners = tree.corners[small]
     clusters = cluster_triangles(
-        surfaces, tree.triangle[small], tree.points[corners], tree.place_of_point[corners], smallest
+        surfaces, tree.triangle[small], tree.points[corners], tree.vertices(corners, small), smallest
     )
     tree.add_clusters(replace(clusters, members=small[clusters.members]))
     return tree

@@ -94,7 +94,7 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     corners, points = faces.corners[face_of_side], faces.points
     shading = side_normals(faces.corner_normals(surfaces)[face_of_side].reshape(-1, 3), np.repeat(side, 3))
     codes, first, group = np.unique(
-        _codes(faces.places[corners].ravel(), shading), return_index=True, return_inverse=True
+        _codes(faces.vertices[face_of_side].ravel(), shading), return_index=True, return_inverse=True
     )
     count = len(first)
 
@@ -138,10 +138,10 @@ def _on_border(of_corner: Ints, candidates: NDArray[np.bool_]) -> NDArray[np.boo
     return result
 
 
-def _codes(places: Ints, shading: Floats) -> Ints:
-    """Numbers that are equal for the same place and about the same shading normal, (c,)."""
+def _codes(vertices: Ints, shading: Floats) -> Ints:
+    """Numbers that are equal for the same vertex and about the same shading normal, (c,)."""
     span = 2 * NORMAL_CELLS + 1
-    codes = places
+    codes = vertices
     for coordinate in shading.T:
         codes = codes * span + (np.rint(coordinate * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS)
     return codes

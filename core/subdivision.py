@@ -28,6 +28,8 @@ class Faces:
     mesh_of_point : (v,) int
     corners : (s, 3) int
         Indices of points.
+    vertices : (s, 3) int
+        Numbers that corners share at one place of a mesh, unless a sheet stands between them.
     triangle : (s,) int
         The surfaces' triangle each lies in.
     weights : (s, 3, 3) float
@@ -40,6 +42,7 @@ class Faces:
     places: Ints
     mesh_of_point: Ints
     corners: Ints
+    vertices: Ints
     triangle: Ints
     weights: Floats
     node: Ints
@@ -47,7 +50,14 @@ class Faces:
     def taken(self, which: Ints) -> Faces:
         """Some of the faces."""
         corners, triangle = self.corners[which], self.triangle[which]
-        return replace(self, corners=corners, triangle=triangle, weights=self.weights[which], node=self.node[which])
+        return replace(
+            self,
+            corners=corners,
+            vertices=self.vertices[which],
+            triangle=triangle,
+            weights=self.weights[which],
+            node=self.node[which],
+        )
 
     def joined(self, others: Faces, tree: PatchTree) -> Faces:
         """These faces and others behind them, of the same tree."""
@@ -56,6 +66,7 @@ class Faces:
             tree.place_of_point,
             tree.mesh_of_point,
             np.concatenate([self.corners, others.corners]),
+            np.concatenate([self.vertices, others.vertices]),
             np.concatenate([self.triangle, others.triangle]),
             np.concatenate([self.weights, others.weights]),
             np.concatenate([self.node, others.node]),
@@ -76,6 +87,7 @@ def input_faces(surfaces: Surfaces) -> Faces:
         tree.place_of_point,
         tree.mesh_of_point,
         surfaces.triangles[triangle],
+        tree.place_of_point[surfaces.triangles[triangle]],
         triangle,
         weights,
         triangle,
@@ -125,11 +137,13 @@ def _closed_by_templates(tree: PatchTree, leaves: Ints, middles: Ints) -> Faces:
     w = tree.weights[leaves]
     weights = np.concatenate([w, (w + np.roll(w, -1, axis=1)) / 2.0], axis=1)
     member, piece = templates.cut(tree.points, six, middles >= 0)
+    corners = six[member[:, None], piece]
     return Faces(
         tree.points,
         tree.place_of_point,
         tree.mesh_of_point,
-        six[member[:, None], piece],
+        corners,
+        tree.vertices(corners, leaves[member]),
         tree.triangle[leaves[member]],
         weights[member[:, None], piece],
         leaves[member],

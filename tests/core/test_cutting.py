@@ -186,7 +186,9 @@ def test_a_vertex_that_uneven_faces_surround_gathers_where_it_is():
     triangles = np.array([[0, 1, 2], [1, 3, 2], [3, 0, 2]])
     surfaces = join(Scene((surface_mesh("floor", points, triangles),), np.ones(3)))
     number = np.arange(4)
-    faces = Faces(points, number, 0 * number, triangles, np.arange(3), np.tile(np.eye(3), (3, 1, 1)), np.arange(3))
+    faces = Faces(
+        points, number, 0 * number, triangles, triangles, np.arange(3), np.tile(np.eye(3), (3, 1, 1)), np.arange(3)
+    )
     places = receivers(surfaces, faces, np.arange(3), np.zeros(3, dtype=np.int64))
     moved = places.inward[places.of_corner[0]].any(axis=1)
     assert moved.tolist() == [True, True, False]
@@ -222,7 +224,7 @@ def test_beyond_two_cuts_is_the_side_of_the_two_other_corners():
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
     triangles, of_corner = np.array([[0, 1, 2], [2, 1, 3]]), np.array([[0, 1, 2], [3, 4, 5]])
     number = np.arange(4)
-    faces = Faces(points, number, 0 * number, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
+    faces = Faces(points, number, 0 * number, triangles, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
     hidden = np.array([False, True, True, False, True, True])
     at = np.zeros((6, 3))
     places = Receivers(at, at, at, np.arange(6), at, np.ones(6), np.zeros(6, dtype=int), of_corner)
@@ -247,7 +249,7 @@ def test_a_vertex_that_gathers_aside_does_not_move_the_cut():
     points = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     triangles = np.array([[0, 1, 2], [0, 2, 3]])
     number = np.arange(4)
-    faces = Faces(points, number, 0 * number, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
+    faces = Faces(points, number, 0 * number, triangles, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
     up, inward = np.tile(UP, (4, 1)), np.zeros((4, 3))
     inward[2] = (-0.05, -0.04, 0.0)
     places = Receivers(points + inward, up, up, number, inward, np.ones(4), np.zeros(4, dtype=int), triangles)

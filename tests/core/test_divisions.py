@@ -31,7 +31,7 @@ def floor_places():
 def floor_faces():
     number = np.arange(4)
     weights = np.tile(np.eye(3), (2, 1, 1))
-    return Faces(POINTS, number, 0 * number, TRIANGLES, np.arange(2), weights, np.arange(2))
+    return Faces(POINTS, number, 0 * number, TRIANGLES, TRIANGLES, np.arange(2), weights, np.arange(2))
 
 
 NONE_HIDDEN = np.zeros(4, dtype=bool)
