@@ -50,6 +50,12 @@ LEAST_TOUCHING_SHARE = 0.15
 """share of the rays of a place that end there: at the foot of a wall half of them do, at that of a pillar's corner a
 quarter."""
 
+IN_PLANE = 1e-6
+"""Distance, in units of the scene's extent, up to which a ray has met the plane that it began in: rounding alone."""
+
+UPRIGHT = 0.5
+"""Cosine of the angle to the surface up to which what stands on it is no cover of it."""
+
 FLAT = 1e-5
 """Difference between the shading normal and the surface's own below which no ray starts under the surface."""
 
@@ -195,7 +201,8 @@ def gather(
         places = places.reshape(last - first, counts.hemisphere)
         means, noise, valid = _mean_seen(radiance, places)
         distance = found.distance.reshape(places.shape)
-        hidden = _covered(transport, receivers.sizes[part], finest, distance) | (valid < LEAST_VALID_SHARE)
+        in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
+        hidden = _covered(transport, receivers.sizes[part], finest, distance, in_plane) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
         return means, noise, hidden, _touching(transport, receivers.inward[part], finest, distance) & ~hidden
 
@@ -250,7 +257,8 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
         found, _, _ = _looked(transport, receivers, part, pattern)
         buried = (found.triangle >= 0) & transport.unlit_side[2 * found.triangle + found.back]
         distance = found.distance.reshape(last - first, rays)
-        covered = _covered(transport, receivers.sizes[part], finest, distance)
+        in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
+        covered = _covered(transport, receivers.sizes[part], finest, distance, in_plane)
         result: NDArray[np.bool_] = covered | (buried.reshape(-1, rays).mean(axis=1) > 1.0 - LEAST_VALID_SHARE)
         return result
 
@@ -299,9 +307,25 @@ def _looked(
     return found, directions, below
 
 
-def _covered(transport: Transport, sizes: Floats, finest: float, distance: Singles) -> NDArray[np.bool_]:
+def _in_plane_of_met(transport: Transport, lift: Floats, found: Hits) -> Ints:
+    """Rays of places (n,) that met what stands on the surface in the very plane that they began in, by number."""
+    met = np.flatnonzero(found.distance < IN_PLANE)
+    place = met // (len(found.distance) // len(lift))
+    upright = np.abs(np.einsum("rx,rx->r", transport.surfaces.normals[found.triangle[met]], lift[place])) < UPRIGHT
+    return met[upright]
+
+
+def _covered(
+    transport: Transport, sizes: Floats, finest: float, distance: Singles, in_plane: Ints
+) -> NDArray[np.bool_]:
+    """Whether places are covered, (n,), by the distances (n, r) that their rays reach.
+
+    A ray that began in the plane of what it met there tells of neither side of it: `in_plane` (k,).
+    """
     reach = (COVER_GAP * transport.rays.scale * np.minimum(SMALLER_FOR_CUTS * sizes, finest)).astype(np.float32)
-    result: NDArray[np.bool_] = (distance < reach[:, None]).mean(axis=1) > LEAST_COVERED_SHARE
+    near = distance < reach[:, None]
+    near.ravel()[in_plane] = False
+    result: NDArray[np.bool_] = near.mean(axis=1) > LEAST_COVERED_SHARE
     return result
 
 

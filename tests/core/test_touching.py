@@ -99,3 +99,26 @@ def test_the_wall_before_an_open_box_of_one_sheet_is_lit():
     mesh = bake(Scene((box, LAMP, wall), DARK), DRAFT).meshes[2]
     # Its darkest corner is lit by the wall's own light, back from the outside of the box: a twentieth of the mean.
     assert mesh.irradiance.min() > 0.0
+
+
+def standing_balls(along, height):
+    """A ground with balls in rows, their middles at a height, under a sky."""
+    side = 3.0 * along
+    ground = exact.rectangle("ground", (-side / 2, -side / 2, 0), (side, 0, 0), (0, side, 0), reflectance=0.3)
+    unit, triangles = exact.icosphere(2)
+    row = 3.0 * (np.arange(along) - (along - 1) / 2)
+    balls = [surface_mesh("ball", unit + [x, y, height], triangles, reflectance=0.5) for x in row for y in row]
+    return Scene((ground, *balls), np.ones(3))
+
+
+def test_balls_whose_edges_lie_in_the_plane_of_the_ground_cost_no_more_than_higher_ones():
+    through_edges, higher = (bake(standing_balls(2, height), DRAFT).report for height in (0.0, 0.1))
+    # Of the balls' vertices in the ground's plane none is covered by it; as if they were, both were twenty times as many.
+    assert through_edges["vertices"] <= 1.25 * higher["vertices"]
+    assert through_edges["rays_by_kind"]["gather"] <= 1.25 * higher["rays_by_kind"]["gather"]
+
+
+def test_more_things_on_a_ground_take_no_more_rays_for_each_vertex():
+    few, many = (bake(standing_balls(along, 0.1), DRAFT).report for along in (2, 4))
+    assert many["vertices"] > 3 * few["vertices"]
+    assert many["rays"] / many["vertices"] <= 1.1 * few["rays"] / few["vertices"]
