@@ -312,7 +312,8 @@ def _in_plane_of_met(transport: Transport, lift: Floats, found: Hits) -> Ints:
     met = np.flatnonzero(found.distance < IN_PLANE)
     place = met // (len(found.distance) // len(lift))
     upright = np.abs(np.einsum("rx,rx->r", transport.surfaces.normals[found.triangle[met]], lift[place])) < UPRIGHT
-    return met[upright]
+    began: Ints = met[upright]
+    return began
 
 
 def _covered(

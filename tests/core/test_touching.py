@@ -113,7 +113,8 @@ def standing_balls(along, height):
 
 def test_balls_whose_edges_lie_in_the_plane_of_the_ground_cost_no_more_than_higher_ones():
     through_edges, higher = (bake(standing_balls(2, height), DRAFT).report for height in (0.0, 0.1))
-    # Of the balls' vertices in the ground's plane none is covered by it; as if they were, both were twenty times as many.
+    # None of the balls' vertices is covered by the ground in whose plane they are; taken for it, these made both counts
+    # twenty times as large.
     assert through_edges["vertices"] <= 1.25 * higher["vertices"]
     assert through_edges["rays_by_kind"]["gather"] <= 1.25 * higher["rays_by_kind"]["gather"]
 
