@@ -121,6 +121,16 @@ def remove_unused_display_materials() -> None:
     for material in list(bpy.data.materials):
         if is_display(material) and material.users - material.use_fake_user <= 0:
             bpy.data.materials.remove(material)
+    remove_unused_groups()
+
+
+def remove_unused_groups() -> None:
+    """Remove our copies of node groups that none of our materials uses any more, outer ones first."""
+    while True:
+        unused = [group for group in bpy.data.node_groups if MARK in group and group.users - group.use_fake_user <= 0]
+        if not unused:
+            return
+        bpy.data.batch_remove(unused)
 
 
 def show_in_viewport(context: bpy.types.Context, objects: Iterable[bpy.types.Object]) -> None:

@@ -63,7 +63,7 @@ def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_pr
     if bake.settings.output == "ORIGINAL":
         objects, cautions = store(scene, extraction, result, attributes)
     else:
-        objects, cautions = _store_in_refined(bake, extraction, result, attributes), []
+        objects, cautions = _store_in_refined(bake, extraction, result, attributes)
     report = shown_report(extraction, result, objects, cautions, exposure, read, time.perf_counter() - began)
     scene.radiosity.report = json.dumps(report)
     return report
@@ -87,8 +87,8 @@ def _originals(bake: RememberedBake) -> list[bpy.types.Object]:
 
 def _store_in_refined(
     bake: RememberedBake, extraction: Extraction, result: BakeResult, attributes: Attributes
-) -> list[bpy.types.Object]:
-    """Write the values on the corners of the refined meshes; returns the refined objects.
+) -> tuple[list[bpy.types.Object], list[str]]:
+    """Write the values on the corners of the refined meshes; returns the refined objects and warnings.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def _store_in_refined(
             _show(output, target, attributes, displays, journal)
         journal.later(display.remove_unused_display_materials)
         journal.later(displays.take_names)
-    return [output for output, _, _ in found]
+    return [output for output, _, _ in found], displays.cautions
 
 
 def _show(

@@ -79,7 +79,7 @@ def store(
                 beside(baked_objects[-1], target.uid, journal)
         journal.later(display.remove_unused_display_materials)
         journal.later(displays.take_names)
-    return baked_objects, warnings
+    return baked_objects, warnings + displays.cautions
 
 
 def check_storable(extraction: Extraction, attributes: Attributes) -> None:

@@ -50,6 +50,8 @@ class Displays:
         self._attributes, self._journal = attributes, journal
         self._made: dict[tuple[bpy.types.Material | None, bool], bpy.types.Material] = {}
         self._has_textures: dict[bpy.types.Material | None, bool] = {}
+        self.cautions: list[str] = []
+        """Sentences on materials that could not be shown with their textures."""
 
     def of(self, original: bpy.types.Material | None, both_sides: bool) -> bpy.types.Material:
         """Return the material that shows the bake on a surface with the material `original`."""
@@ -62,6 +64,12 @@ class Displays:
             except UnsupportedShaderError:
                 # Its colours are in the radiosity, one for each vertex.
                 self._made[key] = self._plain(both_sides)
+                sentence = (
+                    f'Material "{original.name}" mixes shaders in a way that cannot be shown with textures: '
+                    "it shows one colour for each vertex"
+                )
+                if sentence not in self.cautions:
+                    self.cautions.append(sentence)
         return self._made[key]
 
     def _shows_textures(self, original: bpy.types.Material | None) -> bool:
@@ -91,7 +99,7 @@ class Displays:
             show_on_grey(material, shown)
         else:
             material = original.copy()
-            self._journal.on_failure(bpy.data.materials.remove, material)
+            self._journal.on_failure(_remove_with_groups, material)
             material.name = _name(original)
             try:
                 exchange_shaders(material, shown)
@@ -112,13 +120,18 @@ def _name(original: bpy.types.Material | None) -> str:
     return f"{'Grey' if original is None else original.name} Radiosity"
 
 
+def _remove_with_groups(material: bpy.types.Material) -> None:
+    bpy.data.materials.remove(material)
+    display.remove_unused_groups()
+
+
 def exchange_shaders(material: bpy.types.Material, shown: Shown) -> None:
     """Exchange the shaders of `material`, a copy of an original, for one that shows baked irradiance.
 
     Raises
     ------
     UnsupportedShaderError
-        When they are inside a group, or let light through in a way that one mix cannot show.
+        When they let light through in a way that one mix cannot show, or come into a group from outside.
     """
     if not uses_nodes(material):
         colour = tuple(material.diffuse_color[:3])
@@ -136,7 +149,9 @@ def exchange_shaders(material: bpy.types.Material, shown: Shown) -> None:
     for node in [node for node in tree.nodes if node.type == "OUTPUT_MATERIAL"]:
         tree.nodes.remove(node)
     _show(nodes, look, shown, displacement)
-    _remove_unused(tree)
+    for group in nodes.groups:
+        _remove_shaders(group)
+    _remove_unused(tree, "OUTPUT_MATERIAL")
 
 
 def show_on_grey(material: bpy.types.Material, shown: Shown) -> None:
@@ -179,6 +194,8 @@ class _Nodes:
 
     def __init__(self, tree: bpy.types.NodeTree) -> None:
         self.tree = tree
+        self.groups: list[bpy.types.NodeTree] = []
+        """Copies of node groups whose shaders give colours instead."""
         self._made = 0
 
     def look(self, socket: bpy.types.NodeSocket) -> _Look:
@@ -208,9 +225,40 @@ class _Nodes:
             return self._mixed(self.input(node, "Fac"), self.look(node.inputs[1]), self.look(node.inputs[2]))
         if node.type == "ADD_SHADER":
             return self._added(self.look(node.inputs[0]), self.look(node.inputs[1]))
-        if node.type in {"GROUP", "GROUP_INPUT"}:
+        if node.type == "GROUP":
+            return self._look_inside(node, output)
+        if node.type == "GROUP_INPUT":
             raise UnsupportedShaderError
         return _Look() if node.type in NOT_DIFFUSE else _Look(_GREY)
+
+    def _look_inside(self, node: bpy.types.Node, output: bpy.types.NodeSocket) -> _Look:
+        """Return what a group's shader does, as colours that a copy of the group gives."""
+        if node.node_tree is None:
+            return _Look()
+        # Another output of the same node may have been looked at before.
+        if display.MARK not in node.node_tree:
+            node.node_tree = node.node_tree.copy()
+        group = node.node_tree
+        group[display.MARK] = "GROUP"
+        inside = next((each for each in group.nodes if each.type == "GROUP_OUTPUT" and each.is_active_output), None)
+        if inside is None:
+            return _Look()
+        nodes = _Nodes(group)
+        look = nodes.look(next(socket for socket in inside.inputs if socket.identifier == output.identifier))
+        self.groups += [*nodes.groups, group]
+
+        def handed_out(name: str, value: Value) -> Value:
+            if _known(value):
+                return value
+            item = group.interface.new_socket(name, in_out="OUTPUT", socket_type="NodeSocketColor")
+            group.links.new(value, next(each for each in inside.inputs if each.identifier == item.identifier))
+            return next(each for each in node.outputs if each.identifier == item.identifier)
+
+        return _Look(
+            handed_out("Reflected", look.reflected),
+            handed_out("Emitted", look.emitted),
+            handed_out("Opaque", look.alpha),
+        )
 
     def _mixed(self, share: Value, first: _Look, second: _Look) -> _Look:
         alpha = self.mix(share, first.alpha, second.alpha)
@@ -351,10 +399,18 @@ def _source(socket: bpy.types.NodeSocket) -> bpy.types.NodeSocket | None:
             return link.from_socket
 
 
-def _remove_unused(tree: bpy.types.NodeTree) -> None:
+def _remove_shaders(group: bpy.types.NodeTree) -> None:
+    """Remove the shaders that a group gave, which nothing uses any more."""
+    for item in list(group.interface.items_tree):
+        if item.item_type == "SOCKET" and item.in_out == "OUTPUT" and item.socket_type == "NodeSocketShader":
+            group.interface.remove(item)
+    _remove_unused(group, "GROUP_OUTPUT")
+
+
+def _remove_unused(tree: bpy.types.NodeTree, outputs: str) -> None:
     """Remove the nodes that no output shows: exporters read shaders that are linked to nothing, too."""
     used: set[bpy.types.Node] = set()
-    pending = [node for node in tree.nodes if node.type == "OUTPUT_MATERIAL"]
+    pending = [node for node in tree.nodes if node.type == outputs]
     while pending:
         node = pending.pop()
         if node not in used:

@@ -20,6 +20,7 @@ from tests.blender.making import (
     node_material,
     node_tree,
     position_bake,
+    report,
     select_also,
     socket_of,
 )
@@ -188,18 +189,70 @@ def test_by_itself_it_shows_textures_where_there_are_some(paint, light, textures
     assert (shown[display.MARK] == "TEXTURED") == textures
 
 
-def test_shaders_inside_a_group_show_the_radiosity(tmp_path):
-    group = bpy.data.node_groups.new("Paint", "ShaderNodeTree")
-    group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
-    inner, out = group.nodes.new("ShaderNodeBsdfDiffuse"), group.nodes.new("NodeGroupOutput")
-    group.links.new(inner.outputs[0], out.inputs[0])
-    material = bpy.data.materials.new("Grouped")
-    tree = node_tree(material)
+def grouped(material, depth=1):
+    """Return the material with its shader, and what that is made of, inside node groups, one within the other."""
+    for _ in range(depth):
+        tree = material.node_tree
+        group = bpy.data.node_groups.new("Paint", "ShaderNodeTree")
+        group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+        group.interface.new_socket("Colour", in_out="INPUT", socket_type="NodeSocketColor")
+        outside = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL").inputs["Surface"]
+        shader = outside.links[0].from_node
+        inside = group.nodes.new(shader.bl_idname)
+        if shader.type == "GROUP":
+            inside.node_tree = shader.node_tree
+            entrance, colour = inside.inputs["Colour"], shader.inputs["Colour"]
+        else:
+            entrance, colour = socket_of(inside, "Color"), socket_of(shader, "Color")
+        group.links.new(group.nodes.new("NodeGroupInput").outputs[0], entrance)
+        group.links.new(inside.outputs[0], group.nodes.new("NodeGroupOutput").inputs[0])
+        node = tree.nodes.new("ShaderNodeGroup")
+        node.node_tree = group
+        node.inputs["Colour"].default_value = colour.default_value
+        tree.nodes.remove(shader)
+        tree.links.new(node.outputs[0], outside)
+    return material
+
+
+@pytest.mark.parametrize("depth", [1, 2])
+def test_shaders_inside_groups_are_followed(tmp_path, depth):
+    bake(grouped(diffuse_material(), depth))
+    expected = np.array([0.2, 0.4, 0.6]) * IRRADIANCE
+    assert rendered(tmp_path) == pytest.approx(np.broadcast_to(expected, (PIXELS, PIXELS, 3)), rel=TOLERANCE)
+    assert report()["warnings"] == []
+
+
+def shader_handed_into_a_group():
+    material = diffuse_material("Handed In")
+    tree = material.node_tree
+    group = bpy.data.node_groups.new("Varnish", "ShaderNodeTree")
+    for side in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Shader", in_out=side, socket_type="NodeSocketShader")
+    entrance, out = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    group.links.new(entrance.outputs[0], out.inputs[0])
     node = tree.nodes.new("ShaderNodeGroup")
     node.node_tree = group
+    tree.links.new(next(each for each in tree.nodes if each.type == "BSDF_DIFFUSE").outputs[0], node.inputs[0])
     link_surface(tree, node)
-    bake(material)
+    return material
+
+
+def test_what_cannot_be_shown_with_textures_shows_the_radiosity_and_says_so(tmp_path):
+    bake(shader_handed_into_a_group())
     assert rendered(tmp_path) == pytest.approx(np.broadcast_to(RADIOSITY, (PIXELS, PIXELS, 3)), rel=TOLERANCE)
+    (sentence,) = report()["warnings"]
+    assert '"Handed In"' in sentence and "one colour for each vertex" in sentence
+
+
+@pytest.mark.parametrize("make", [lambda: grouped(diffuse_material(), 2), shader_handed_into_a_group])
+def test_copies_of_groups_go_with_the_materials(make):
+    material = make()
+    before = sorted(group.name for group in bpy.data.node_groups)
+    bake(material)
+    bake_selected()
+    assert bpy.ops.radiosity.restore() == {"FINISHED"}
+    assert sorted(group.name for group in bpy.data.node_groups) == before
+    assert [each.name for each in bpy.data.materials] == [material.name]
 
 
 @pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
