@@ -192,11 +192,11 @@ def gather(
 
     def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
         part = slice(first, last)
-        found, directions, below = _looked(transport, receivers, part, pattern)
+        found, below = _looked(transport, receivers, part, pattern)
         places = cells.places(found)
         if radiance.first_of_sky is not None:
             left = np.flatnonzero(places == ESCAPED)
-            places[left] = radiance.first_of_sky + map_cells(directions[left])
+            places[left] = radiance.first_of_sky + map_cells(found.directions[left])
         places[below] = BELOW
         places = places.reshape(last - first, counts.hemisphere)
         means, noise, valid = _mean_seen(radiance, places)
@@ -254,7 +254,7 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
 
     def work(first: int, last: int) -> NDArray[np.bool_]:
         part = slice(first, last)
-        found, _, _ = _looked(transport, receivers, part, pattern)
+        found, _ = _looked(transport, receivers, part, pattern)
         buried = (found.triangle >= 0) & transport.unlit_side[2 * found.triangle + found.back]
         distance = found.distance.reshape(last - first, rays)
         in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
@@ -284,8 +284,8 @@ def _mean_seen(radiance: Radiance, places: NDArray[np.int32]) -> tuple[Floats, F
 
 def _looked(
     transport: Transport, receivers: Receivers, part: slice, pattern: Singles
-) -> tuple[Hits, Singles, NDArray[np.bool_] | slice]:
-    """What the rays of receivers meet, (n * r,), their directions, and which of them started below their surface."""
+) -> tuple[Hits, NDArray[np.bool_] | slice]:
+    """What the rays of receivers meet, (n * r,), and which of them started below their surface."""
     rays = len(pattern)
     # All receivers take the same pattern: what it misses then changes slowly over a surface instead of mottling it, at
     # the same error.
@@ -300,11 +300,11 @@ def _looked(
     )
     found = transport.rays.first_hits(origins, directions, even)
     if not np.any(np.abs(normals - lift) > FLAT):
-        return found, directions, slice(0)
+        return found, slice(0)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.
     below = (directions.reshape(len(lift), rays, 3) @ lift[:, :, None]).ravel() <= 0.0
     found.distance[below] = np.inf
-    return found, directions, below
+    return found, below
 
 
 def _in_plane_of_met(transport: Transport, lift: Floats, found: Hits) -> Ints:

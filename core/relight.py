@@ -138,9 +138,10 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
 
 def _transmittance_of(mesh: SurfaceMesh) -> list[NDArray[Any]]:
     """All that tells what goes through a mesh; nothing where nothing does."""
-    share, texture = mesh.transmittance, mesh.transmittance_texture
-    constant = [] if share is None or not share.any() else [share]
-    return constant if texture is None else [*constant, texture.triangle, texture.along, texture.colours]
+    share, texture, glass = mesh.transmittance, mesh.transmittance_texture, mesh.refraction
+    found: list[NDArray[Any]] = [] if share is None or not share.any() else [share]
+    found += [] if texture is None else [texture.triangle, texture.along, texture.colours]
+    return found if glass is None or (glass == 1.0).all() else [*found, glass]
 
 
 def shape_of_lamp(lamp: Lamp) -> bytes:

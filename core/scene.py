@@ -92,6 +92,9 @@ class SurfaceMesh:
         leaves, as means over holes and all.
     transmittance_texture : Texture or None
         Of the triangles over which it varies.
+    refraction : (t,) float or None
+        Index of refraction of those that are the surface of glass, which reflects a part of what would go through; 1 of
+        others.
     front_only : (t,) bool or None
         Triangles whose back does not emit.
     linking : LightLinking
@@ -112,6 +115,7 @@ class SurfaceMesh:
     clear: NDArray[np.bool_] | None = None
     transmittance: Floats | None = None
     transmittance_texture: Texture | None = None
+    refraction: Floats | None = None
     front_only: NDArray[np.bool_] | None = None
     linking: LightLinking = UNLINKED
 

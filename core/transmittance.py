@@ -18,6 +18,11 @@ from .sampling import Singles
 from .scene import LUMINANCE, Floats, Ints, SurfaceMesh, Texture
 from .textures import cell_at, joined, mean_colours, with_means
 
+TINY = np.float32(np.finfo(np.float32).tiny)
+
+MOST_REFRACTING = 10.0
+"""Index of refraction above which none is taken."""
+
 OPAQUE = 1e-3
 """Share of the light up to which what goes through is left out, as nothing is seen of it."""
 
@@ -32,10 +37,13 @@ class Transmittance:
         Over each triangle, in luminance.
     texture : Texture or None
         Of those over which it varies; its colours are (cells, 1).
+    refraction : (t,) float32 or None
+        Index of refraction of glass, 1 of all else; None where there is no glass.
     """
 
     means: Floats
     texture: Texture | None
+    refraction: Singles | None = None
 
     @cached_property
     def some(self) -> NDArray[np.bool_]:
@@ -63,6 +71,21 @@ class Transmittance:
         result: Singles = shares[cell]
         return result
 
+    def reflected(self, triangle: NDArray[np.int32], directions: Singles, normals: Singles) -> Singles | None:
+        """The share of what would go through that glass reflects instead, (n,); None where there is no glass.
+
+        Parameters
+        ----------
+        triangle : (n,) int32
+        directions, normals : (n, 3) float32
+            Of rays, and of what they meet; of any length.
+        """
+        if self.refraction is None:
+            return None
+        square = np.einsum("nx,nx->n", directions, directions) * np.einsum("nx,nx->n", normals, normals)
+        along = np.abs(np.einsum("nx,nx->n", directions, normals))
+        return fresnel(np.minimum(along / np.sqrt(np.maximum(square, TINY)), 1.0), self.refraction[triangle])
+
     def opacity_over(self, triangle: Ints, corners: Floats, row: Ints | None = None) -> Floats:
         """Mean share over parts of triangles that does not go through, (n, 1); see `mean_colours`."""
         opacity: Floats = 1.0 - mean_colours(self.means, self.texture, triangle, corners, row)
@@ -78,8 +101,32 @@ def transmittance_of(meshes: tuple[SurfaceMesh, ...], kept: list[Ints]) -> Trans
     texture = joined([(mesh.transmittance_texture, k) for mesh, k in zip(meshes, kept, strict=True)])
     if texture is not None:
         texture = replace(texture, colours=_share(texture.colours).astype(np.float32))
-    found = Transmittance(with_means(np.concatenate(means), texture), texture)
+    index = [
+        np.ones(len(k)) if m.refraction is None else np.nan_to_num(m.refraction[k], nan=1.0)
+        for m, k in zip(meshes, kept, strict=True)
+    ]
+    refraction = np.clip(np.concatenate(index), 1.0, MOST_REFRACTING).astype(np.float32)
+    glass = refraction if (refraction > 1.0).any() else None
+    found = Transmittance(with_means(np.concatenate(means), texture), texture, glass)
     return found if found.some.any() else None
+
+
+def fresnel(cosine: Singles, refraction: Singles) -> Singles:
+    """Share of light that glass reflects where it meets its surface at an angle outside of it, (n,).
+
+    Inside, light meets the other surface of a pane at an angle at which as much is reflected. The formula is that of
+    Cook & Torrance 1982.
+
+    Parameters
+    ----------
+    cosine, refraction : (n,) float32
+        Of the angle to the normal; the index.
+    """
+    bent = np.sqrt(refraction * refraction - 1.0 + cosine * cosine)
+    across = (bent - cosine) / np.maximum(bent + cosine, TINY)
+    along = (cosine * (bent + cosine) - 1.0) / (cosine * (bent - cosine) + 1.0)
+    share: Singles = (0.5 * across * across * (1.0 + along * along)).astype(np.float32)
+    return share
 
 
 def of_opaque(colours: Floats, opacity: Floats) -> Floats:

@@ -233,7 +233,7 @@ class Transport:
         element[self.unlit_side[2 * triangle + found.back]] = BURIED
         element[missed] = ESCAPED
         if self.surfaces.world.ndim > 1:
-            root[missed] = map_cells(directions[missed])
+            root[missed] = map_cells(found.directions[missed])
         return element, root, weights, found.distance
 
     def follow_splits(self) -> int:

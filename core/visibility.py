@@ -7,7 +7,7 @@ from __future__ import annotations
 import copy
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -69,6 +69,8 @@ class Hits:
         Huge where the ray left the scene.
     back : (n,) bool
         Whether the ray met the side that the triangle's winding makes the back.
+    directions : (n, 3) float32
+        In which the rays came: not as they left, where glass reflected them.
     """
 
     triangle: NDArray[np.int32]
@@ -76,6 +78,7 @@ class Hits:
     v: NDArray[np.float32]
     distance: NDArray[np.float32]
     back: NDArray[np.bool_]
+    directions: NDArray[np.float32]
 
     def weights(self) -> NDArray[np.float32]:
         """The two weights side by side, (n, 2)."""
@@ -214,44 +217,55 @@ class RayScene:
         Parameters
         ----------
         chances : (n,) float32, 0..1, or None
-            Of each ray: it goes on through what lets a larger share of the light through. None has them go through what
-            is more clear than opaque.
+            Of each ray: it goes on through what lets a larger share of the light through, or is reflected by glass.
+            None has all go through what is more clear than opaque.
         """
         hits, normals = self._first_hits(origins, directions)
-        if self.transmittance is not None:
-            left = np.full(len(origins), 0.5, dtype=np.float32) if chances is None else chances.copy()
-            self._go_on(hits, normals, origins, directions, left)
-        return hits
+        if self.transmittance is None:
+            return hits
+        left = np.full(len(origins), 0.5, dtype=np.float32) if chances is None else chances.copy()
+        mirrored = replace(hits, directions=directions.copy())
+        self._go_on(mirrored, normals, origins, left)
+        return mirrored
 
     def _first_hits(self, origins: Singles, directions: Singles) -> tuple[Hits, Singles]:
         """What rays meet, and the normals there, (n, 3), of any length."""
         answer = self._run(self._of_seen, origins, directions, query="INTERSECT", output=True)
         back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
-        hits = Hits(self._of_seen.number(answer["primID"]), answer["u"], answer["v"], answer["tfar"], back)
+        hits = Hits(self._of_seen.number(answer["primID"]), answer["u"], answer["v"], answer["tfar"], back, directions)
         return hits, answer["Ng"]
 
-    def _go_on(self, hits: Hits, normals: Singles, origins: Singles, directions: Singles, chances: Singles) -> None:
+    def _go_on(self, hits: Hits, normals: Singles, origins: Singles, chances: Singles) -> None:
         """Put in place of hits that let a ray through what it meets behind; `chances` are used up."""
         assert self.transmittance is not None
         rows = np.flatnonzero(hits.triangle >= 0)
-        normals = normals[rows]
+        normals, starts, reach = normals[rows], origins[rows], hits.distance[rows]
         for _ in range(MOST_SHEETS):
             on = np.flatnonzero(self.transmittance.some[hits.triangle[rows]])
-            rows, normals = rows[on], normals[on]
-            share = self.transmittance.at(hits.triangle[rows], hits.u[rows], hits.v[rows])
-            on = np.flatnonzero(chances[rows] < share)
+            share = self.transmittance.at(hits.triangle[rows[on]], hits.u[rows[on]], hits.v[rows[on]])
+            on, share = on[chances[rows[on]] < share], share[chances[rows[on]] < share]
             if len(on) == 0:
                 return
-            rows, normals, share = rows[on], normals[on], share[on]
+            rows, normals, starts, reach = rows[on], normals[on], starts[on], reach[on]
             # What is left of a number below the share is as evenly spread as the number was.
             chances[rows] /= share
-            way = directions[rows]
-            behind, normals = self._first_hits(_beyond(origins[rows], way, hits.distance[rows], normals), way)
-            hits.distance[rows] += behind.distance
+            way = hits.directions[rows]
+            starts = _beyond(starts, way, reach, normals)
+            glass = self.transmittance.reflected(hits.triangle[rows], way, normals)
+            if glass is not None:
+                back = np.flatnonzero(chances[rows] < glass)
+                forth = np.flatnonzero(chances[rows] >= glass)
+                chances[rows[back]] /= glass[back]
+                chances[rows[forth]] = (chances[rows[forth]] - glass[forth]) / (1.0 - glass[forth])
+                starts[back], way[back] = _mirrored(starts[back], way[back], normals[back])
+                hits.directions[rows] = way
+            behind, normals = self._first_hits(starts, way)
+            reach = behind.distance
+            hits.distance[rows] += reach
             for name in ("triangle", "u", "v", "back"):
                 getattr(hits, name)[rows] = getattr(behind, name)
             on = np.flatnonzero(behind.triangle >= 0)
-            rows, normals = rows[on], normals[on]
+            rows, normals, starts, reach = rows[on], normals[on], starts[on], reach[on]
 
     def lifted(self, points: Floats, normals: Floats) -> tuple[NDArray[np.float32], Floats]:
         """Where rays start that leave a surface at points (n, 3) on the side of its normals.
@@ -304,6 +318,9 @@ class RayScene:
             on = np.flatnonzero(answer["primID"] >= 0)
             met = sheets.number(answer["primID"][on])
             result[rows[on]] *= self.transmittance.at(met, answer["u"][on], answer["v"][on])
+            glass = self.transmittance.reflected(met, way[on], answer["Ng"][on])
+            if glass is not None:
+                result[rows[on]] *= 1.0 - glass
             kept = result[rows[on]] > FAINTEST
             result[rows[on[~kept]]] = 0.0
             on = on[kept]
@@ -322,6 +339,13 @@ def spread_of_rays(seen: NDArray[np.bool_] | NDArray[np.float32], share: Floats)
     """
     spread: Floats = share * (1.0 - share) if seen.dtype == bool else seen.var(axis=1, dtype=np.float64)
     return spread
+
+
+def _mirrored(beyond: Singles, directions: Singles, normals: Singles) -> tuple[Singles, Singles]:
+    """Where rays (n, 3) that would go on `beyond` a surface start on this side of it, and in which direction."""
+    unit = normals / np.maximum(np.sqrt(np.einsum("nx,nx->n", normals, normals)), np.finfo(np.float32).tiny)[:, None]
+    along = np.einsum("nx,nx->n", directions, unit)[:, None]
+    return beyond - np.copysign(np.float32(2.0 * OFFSET), along) * unit, directions - 2.0 * along * unit
 
 
 def _beyond(origins: Singles, directions: Singles, distance: Singles, normals: Singles) -> Singles:

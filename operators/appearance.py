@@ -40,7 +40,10 @@ class Appearance:
     reflectance_texture, emission_texture : Texture or None
     transmittance : (t, 3) float or None
     transmittance_texture : Texture or None
+    refraction : (t,) float or None
     clear, front_only : (t,) bool or None
+    bare : bool
+        Whether it has no colours of its own.
     """
 
     reflectance: Floats
@@ -49,7 +52,9 @@ class Appearance:
     emission_texture: Texture | None = None
     transmittance: Floats | None = None
     transmittance_texture: Texture | None = None
+    refraction: Floats | None = None
     clear: np.ndarray | None = None
+    bare: bool = False
     front_only: np.ndarray | None = None
 
     def painted(self, reflectance: Floats) -> "Appearance":
@@ -215,17 +220,22 @@ def appearance_of(
         marks = np.array([getattr(surface, name) for surface in surfaces])
         if marks.any():
             colours[name] = marks[slot_of_triangle]
+    colours["bare"] = all(surfaces[number].is_bare for number in np.unique(slot_of_triangle))
+    refraction = np.array([surface.refraction for surface in surfaces])
+    if (refraction > 1.0).any():
+        colours["refraction"] = refraction[slot_of_triangle]
     for name, source in (("reflectance", "reflectance"), ("emission", "emission"), ("transmittance", "through")):
         values = [getattr(surface, source) for surface in surfaces]
         constants = np.array([np.zeros(3) if varies(value) else value for value in values])
-        if name != "transmittance" or constants.any() or varies(*values):
+        known = None if evaluation is None else getattr(evaluation, name)
+        if name != "transmittance" or constants.any() or varies(*values) or known is not None:
             colours[name] = constants[slot_of_triangle]
         parts = []
-        if evaluation is not None and name != "transmittance":
+        if known is not None:
             triangle = evaluation.triangle
-            parts.append(Texture(triangle, slot_of_triangle[triangle], along[triangle], getattr(evaluation, name)))
+            parts.append(Texture(triangle, slot_of_triangle[triangle], along[triangle], known))
         for slot, value in enumerate(values):
-            triangle = np.flatnonzero((slot_of_triangle == slot) & (~evaluated | (name == "transmittance")))
+            triangle = np.flatnonzero((slot_of_triangle == slot) & ~evaluated)
             if varies(value) and len(triangle):
                 cells = _cells(value, attributes, triangle, along[triangle])
                 parts.append(Texture(triangle, np.full(len(triangle), slot), along[triangle], cells))

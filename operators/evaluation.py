@@ -6,7 +6,7 @@ It happens in a scratch scene, on a copy of the mesh in which each triangle has 
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -30,6 +30,8 @@ _WITHOUT_GLOSS = ("Specular IOR Level", "Coat Weight", "Sheen Weight")
 """Layers of the Principled BSDF that take light from the diffuse one below. They give it to the room all the same, so
 the base colour is the better albedo."""
 
+_LET_THROUGH = {"BSDF_TRANSPARENT", "BSDF_GLASS", "BSDF_REFRACTION"}
+
 _DEPENDS_ON_PLACE = {"OBJECT_INFO", "NEW_GEOMETRY", "CAMERA", "PARTICLE_INFO", "BEVEL", "AMBIENT_OCCLUSION"}
 """Nodes that may look different on another object of the same mesh."""
 
@@ -48,18 +50,22 @@ class Evaluation:
         Ascending.
     reflectance, emission : (cells, 3) float32
         Of the cells of one triangle after the other, in the order of `cell_centres`.
+    transmittance : (cells, 3) float32 or None
+        What goes straight through them; None where nothing does.
     """
 
     triangle: Ints
     reflectance: Singles
     emission: Singles
+    transmittance: Singles | None = None
 
     def turned_over(self, along: Ints) -> "Evaluation":
         """The same colours for triangles wound the other way, with so many cells along the edges of each, (t,)."""
         cells = along[self.triangle]
         first = np.cumsum(cells**2) - cells**2
         order = np.concatenate([begin + _mirrored(int(count)) for begin, count in zip(first, cells, strict=True)])
-        return replace(self, reflectance=self.reflectance[order], emission=self.emission[order])
+        through = None if self.transmittance is None else self.transmittance[order]
+        return Evaluation(self.triangle, self.reflectance[order], self.emission[order], through)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,8 +143,8 @@ def evaluate(
                 mesh.materials.append(_bakeable(materials[number] if known else None, image))
             scratch = _object_like(obj, mesh, matrix)
             scene.collection.objects.link(scratch)
-            texels = {}
-            for kind, passes in (("DIFFUSE", {"pass_filter": {"COLOR"}}), ("EMIT", {})):
+
+            def colours(kind: str, **passes: Any) -> Singles:
                 bake_in(
                     scene,
                     scratch,
@@ -151,10 +157,17 @@ def evaluate(
                 )
                 pixels = np.empty(4 * width * height, dtype=np.float32)
                 image.pixels.foreach_get(pixels)
-                texels[kind] = pixels.reshape(height, width, 4)[..., :3]
+                return _of_cells(pixels.reshape(height, width, 4)[..., :3], corner, along[triangle])
+
+            reflectance, emission, transmittance = colours("DIFFUSE", pass_filter={"COLOR"}), colours("EMIT"), None
+            trees = [made.node_tree for made in mesh.materials]
+            if any(_lets_through(node) for tree in trees for node in _nodes(tree)):
+                for tree in trees:
+                    show_what_goes_through(tree)
+                transmittance = colours("EMIT")
     except (BakeError, RuntimeError) as error:
         raise NotEvaluatedError(str(error).removeprefix("Error: ").strip().rstrip(".")) from error
-    return Evaluation(triangle, *(_of_cells(texels[kind], corner, along[triangle]) for kind in ("DIFFUSE", "EMIT")))
+    return Evaluation(triangle, reflectance, emission, transmittance)
 
 
 def _places(along: Ints) -> tuple[Ints, int, int]:
@@ -254,6 +267,72 @@ def _bakeable(material: bpy.types.Material | None, image: bpy.types.Image) -> bp
     target.image = image
     tree.nodes.active = target
     return made
+
+
+def _lets_through(node: bpy.types.Node) -> bool:
+    if node.type == "BSDF_PRINCIPLED":
+        sockets = {name: _socket(node, name) for name in ("Alpha", "Transmission Weight")}
+        return any(
+            socket.is_linked or socket.default_value != (1.0 if name == "Alpha" else 0.0)
+            for name, socket in sockets.items()
+        )
+    return node.type in _LET_THROUGH
+
+
+def show_what_goes_through(tree: bpy.types.NodeTree) -> None:
+    """Exchange the shaders of a tree, and of the groups in it, for emission of the share of light they let through."""
+    for node in list(tree.nodes):
+        if node.type == "GROUP" and node.node_tree is not None:
+            show_what_goes_through(node.node_tree)
+        shaders = [socket for socket in node.outputs if socket.type == "SHADER"]
+        if not shaders or node.type in {"MIX_SHADER", "ADD_SHADER", "GROUP", "GROUP_INPUT"}:
+            continue
+        emission = tree.nodes.new("ShaderNodeEmission")
+        emission.inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+        if node.type in _LET_THROUGH:
+            _feed(tree, emission.inputs["Color"], _socket(node, "Color"))
+        elif node.type == "BSDF_PRINCIPLED":
+            _feed(tree, emission.inputs["Color"], _through_principled(tree, node))
+        for link in list(shaders[0].links):
+            tree.links.new(emission.outputs[0], link.to_socket)
+
+
+def _through_principled(tree: bpy.types.NodeTree, node: bpy.types.Node) -> bpy.types.NodeSocket:
+    """Return 1 - alpha (1 - (1 - metallic) transmission sqrt(colour)), as `materials` has it."""
+    root = tree.nodes.new("ShaderNodeGamma")
+    _feed(tree, root.inputs["Color"], _socket(node, "Base Color"))
+    root.inputs["Gamma"].default_value = 0.5
+    black, white = (0.0, 0.0, 0.0, 1.0), (1.0, 1.0, 1.0, 1.0)
+    glass = _between(tree, _socket(node, "Transmission Weight"), black, root.outputs[0])
+    bright = _between(tree, _socket(node, "Metallic"), glass, black)
+    return _between(tree, _socket(node, "Alpha"), white, bright)
+
+
+def _between(tree: bpy.types.NodeTree, share: bpy.types.NodeSocket, first: Any, second: Any) -> bpy.types.NodeSocket:
+    """Return a colour that goes from the first to the second as the share does from 0 to 1."""
+    mix = tree.nodes.new("ShaderNodeMix")
+    mix.data_type = "RGBA"
+    _feed(tree, _socket(mix, "Factor_Float"), share)
+    for name, colour in (("A_Color", first), ("B_Color", second)):
+        if isinstance(colour, tuple):
+            _socket(mix, name).default_value = colour
+        else:
+            tree.links.new(colour, _socket(mix, name))
+    return next(socket for socket in mix.outputs if socket.identifier == "Result_Color")
+
+
+def _feed(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket, source: bpy.types.NodeSocket) -> None:
+    """Give a socket what another input or output has, or is linked to."""
+    if source.is_output:
+        tree.links.new(source, socket)
+    elif source.is_linked:
+        tree.links.new(source.links[0].from_socket, socket)
+    else:
+        socket.default_value = source.default_value
+
+
+def _socket(node: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket:
+    return next(socket for socket in node.inputs if socket.identifier == identifier)
 
 
 def _set_constant(node: bpy.types.Node, name: str, value: float) -> None:

@@ -482,7 +482,7 @@ class _Reader:
         if not role.lights:
             appearance, glow = appearance.without_light()
         owner = entry.owner
-        if owner is not None and appearance.clear is not None and appearance.clear.all():
+        if owner is not None and appearance.bare:
             # Colours on it would hide what is seen through it.
             self.clear.add(owner)
             owner = None
@@ -504,6 +504,7 @@ class _Reader:
                 clear=appearance.clear,
                 transmittance=appearance.transmittance,
                 transmittance_texture=appearance.transmittance_texture,
+                refraction=appearance.refraction,
                 front_only=appearance.front_only,
                 baked=owner is not None,
                 seen=role.seen,

@@ -58,8 +58,10 @@ class Surface:
         What was skipped or guessed, each a clause to follow the material's name and a colon.
     through : (3,) float or Varying, 0..1
         Share of the light that goes straight through it, linear RGB.
+    refraction : float
+        Index of refraction where that is through glass, which reflects a part of it; else 1.
     clear : bool
-        Whether all of it does, as if it were not there.
+        Whether all of it goes through, as if the material were not there.
     front_only : bool
         Whether it emits from its front alone.
     unread : tuple of str
@@ -71,8 +73,15 @@ class Surface:
     notes: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
     through: Colour | Varying = field(default_factory=lambda: np.zeros(3))
+    refraction: float = 1.0
     clear: bool = False
     front_only: bool = False
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether it has no light of its own to show: it is clear, or glass and nothing else."""
+        glass = self.refraction > 1.0 and not self.unread and not varies(self.reflectance, self.emission)
+        return self.clear or bool(glass and not np.any(self.reflectance) and not np.any(self.emission))
 
     def colours(self) -> tuple[Colour | Varying, ...]:
         """Return all three."""
@@ -85,15 +94,22 @@ def _surface(
     notes: Iterable[str] = (),
     unread: Iterable[str] = (),
     through: object = 0.0,
+    refraction: float = 1.0,
 ) -> Surface:
     def colour(value: object) -> Colour | Varying:
         if isinstance(value, Varying):
             return value
         return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (3,)))
 
-    clear = not varies(through) and bool(np.all(np.asarray(through) >= _CLEAR))
+    clear = not varies(through) and refraction == 1.0 and bool(np.all(np.asarray(through) >= _CLEAR))
     return Surface(
-        colour(reflectance), colour(emission), tuple(notes), tuple(unread), colour(0.0 if clear else through), clear
+        colour(reflectance),
+        colour(emission),
+        tuple(notes),
+        tuple(unread),
+        colour(0.0 if clear else through),
+        refraction,
+        clear,
     )
 
 
@@ -181,6 +197,7 @@ class _ShaderReader:
         self.with_textures = with_textures
         self.back = back
         self.asked_for_side = False
+        self.refraction = 1.0
         self.notes: list[str] = []
         self.unread: list[str] = []
 
@@ -196,7 +213,8 @@ class _ShaderReader:
         if not varies(emission) and np.any(emission < 0.0):
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
-        return _surface(reflectance, emission, dict.fromkeys(self.notes), dict.fromkeys(self.unread), through)
+        notes, unread = dict.fromkeys(self.notes), dict.fromkeys(self.unread)
+        return _surface(reflectance, emission, notes, unread, through, self.refraction)
 
     def _shader(self, socket, groups) -> tuple[Value, Value, Value]:
         """Return reflectance, emission and what is let through by whatever is linked to a shader socket.
@@ -217,6 +235,10 @@ class _ShaderReader:
             return self._colour(node, "Color", groups), np.zeros(3), np.zeros(3)
         if node.type == "BSDF_TRANSPARENT":
             return np.zeros(3), np.zeros(3), self._colour(node, "Color", groups)
+        if node.type in {"BSDF_GLASS", "BSDF_REFRACTION"}:
+            if node.type == "BSDF_GLASS":
+                self._refract(node, groups)
+            return np.zeros(3), np.zeros(3), self._colour(node, "Color", groups)
         if node.type == "MIX_SHADER":
             share = self._share(node, "Fac", groups)
             first, second = self._shader(node.inputs[1], groups), self._shader(node.inputs[2], groups)
@@ -227,21 +249,28 @@ class _ShaderReader:
         return self._unsupported(node, groups)
 
     def _principled(self, node, groups) -> tuple[Value, Value, Value]:
-        for name in ("Metallic", "Transmission Weight"):
-            share = self._share(node, name, groups)
-            if varies(share) or share > 0.0:
-                self.notes.append(f"{name.split()[0]} reflects no diffuse light; that part counts as black")
         opaque = self._share(node, "Alpha", groups)
-        rest = [self._share(node, name, groups) for name in ("Metallic", "Transmission Weight")]
-        diffuse = combined(lambda alpha, *shares: alpha * np.prod([1.0 - s for s in shares], axis=0), opaque, *rest)
+        metal, glass = (self._share(node, name, groups) for name in ("Metallic", "Transmission Weight"))
+        if varies(metal) or metal > 0.0:
+            self.notes.append("Metallic reflects no diffuse light; that part counts as black")
+        diffuse = combined(lambda alpha, m, g: alpha * (1.0 - m) * (1.0 - g), opaque, metal, glass)
         reflectance = np.zeros(3)
         if varies(diffuse) or diffuse > 0.0:
             reflectance = combined(np.multiply, self._colour(node, "Base Color", groups), diffuse)
+        through = combined(lambda alpha: (1.0 - alpha) * np.ones(3), opaque)
+        if varies(glass) or glass > 0.0:
+            self._refract(node, groups)
+            colour = self._colour(node, "Base Color", groups)
+            through = combined(_through_glass, through, opaque, metal, glass, colour)
         strength = combined(np.multiply, self._value(node, "Emission Strength", groups), opaque)
         emission = np.zeros(3)
         if varies(strength) or strength != 0.0:
             emission = combined(np.multiply, self._colour(node, "Emission Color", groups), strength)
-        return reflectance, emission, combined(lambda alpha: (1.0 - alpha) * np.ones(3), opaque)
+        return reflectance, emission, through
+
+    def _refract(self, node, groups) -> None:
+        index = self._value(node, "IOR", groups)
+        self.refraction = max(self.refraction, 1.0 if varies(index) else float(index))
 
     def _unsupported(self, node, groups) -> tuple[Value, Value, Value]:
         name = _title(node)
@@ -436,6 +465,11 @@ def _mix(share: Value, first: Value, second: Value) -> Value:
 
 def _mixed(share, first, second):
     return (1.0 - share) * first + share * second
+
+
+def _through_glass(through, opaque, metal, glass, colour):
+    """Return what goes through one surface of a Principled BSDF; both of a pane multiply to its base colour."""
+    return through + opaque * (1.0 - metal) * glass * np.sqrt(np.clip(colour, 0.0, 1.0))
 
 
 def _uv_map(name: str) -> Varying:

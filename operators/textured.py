@@ -207,17 +207,15 @@ class _Nodes:
         if output.type == "RGBA":
             return _Look(emitted=output)
         if node.type == "BSDF_PRINCIPLED":
-            diffuse = self.multiply(
-                self.rest(self.input(node, "Metallic")), self.rest(self.input(node, "Transmission Weight"))
-            )
-            return _Look(
-                self.multiply(self.input(node, "Base Color"), diffuse),
-                self.multiply(self.input(node, "Emission Color"), self.input(node, "Emission Strength")),
-                self.input(node, "Alpha"),
-            )
+            reflected = self.multiply(self.input(node, "Base Color"), self.rest(self.input(node, "Metallic")))
+            emitted = self.multiply(self.input(node, "Emission Color"), self.input(node, "Emission Strength"))
+            alpha, not_glass = self.input(node, "Alpha"), self.rest(self.input(node, "Transmission Weight"))
+            if emitted == _BLACK:
+                return _Look(reflected, emitted, self.multiply(alpha, not_glass))
+            return _Look(self.multiply(reflected, not_glass), emitted, alpha)
         if node.type == "EMISSION":
             return _Look(emitted=self.multiply(self.input(node, "Color"), self.input(node, "Strength")))
-        if node.type == "BSDF_TRANSPARENT":
+        if node.type in {"BSDF_TRANSPARENT", "BSDF_GLASS", "BSDF_REFRACTION"}:
             return _Look(alpha=_BLACK)
         if node.type in _DIFFUSE:
             return _Look(self.input(node, "Color"))

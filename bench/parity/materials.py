@@ -206,6 +206,30 @@ def half_clear_window() -> list[Any]:
     return [floor]
 
 
+@case("A pane of glass between a lamp and the floor", samples=16384)
+def glass_pane() -> list[Any]:
+    """Light goes through both of its surfaces, and a part of it is reflected."""
+    floor = stage.room()
+    glass = stage.material("Glass", "ShaderNodeBsdfGlass", Roughness=0.0, IOR=1.45)
+    stage.box("Pane", (-2.0, -2.0, 0.9), (2.0, 2.0, 0.95), glass)
+    stage.lamp("AREA", shape="DISK", size=0.5)
+    return [floor]
+
+
+@case("A closed room under a skylight of smoked glass", samples=2048)
+def skylight() -> list[Any]:
+    """Principled transmission of grey glass: all light in the room has come through it."""
+    floor = stage.closed_room()
+    grey = (0.7, 0.7, 0.7)
+    glass = stage.material(
+        "Glass", "ShaderNodeBsdfPrincipled", Base_Color=grey, Transmission_Weight=1.0, Roughness=0.0, IOR=1.45
+    )
+    bpy.data.objects.remove(bpy.data.objects["Ceiling"])
+    stage.box("Pane", (-1.5, -1.5, 2.4), (1.5, 1.5, 2.45), glass)
+    stage.world(strength=2.0)
+    return [floor]
+
+
 @case("Emission from one side, by a Backfacing node")
 def one_sided_emission() -> list[Any]:
     """A sheet that shines down and is dark above, between the floor and a wall."""

@@ -156,10 +156,20 @@ def test_a_glossy_shader_reflects_no_diffuse_light_and_is_named():
     assert "Glossy" in note
 
 
-@pytest.mark.parametrize("name", ["Metallic", "Transmission_Weight"])
-def test_the_part_of_a_principled_shader_that_is_not_diffuse_is_named(name):
-    (note,) = material_surface(principled(**{name: 0.5})).notes
-    assert name.split("_")[0] in note
+def test_the_part_of_a_principled_shader_that_is_metal_is_named():
+    (note,) = material_surface(principled(Metallic=0.5)).notes
+    assert "Metallic reflects no diffuse light" in note
+
+
+def test_glass_lets_light_through_and_refracts_it():
+    glass = material_surface(node_material("Pane", "ShaderNodeBsdfGlass", Color=(0.8, 0.8, 0.8, 1.0), IOR=1.5))
+    assert glass.through == pytest.approx(np.full(3, 0.8)) and glass.refraction == pytest.approx(1.5)
+    assert glass.is_bare and not glass.clear and glass.notes == ()
+    grey = principled(Base_Color=(0.64, 0.64, 0.64, 1.0), Transmission_Weight=0.5, Alpha=0.5, IOR=1.4)
+    surface = material_surface(grey)
+    # Half of it is not there; of the other half, half is glass, and two surfaces of it make a pane.
+    assert surface.through == pytest.approx(np.full(3, 0.5 + 0.5 * 0.5 * 0.8))
+    assert surface.reflectance == pytest.approx(np.full(3, 0.16)) and not surface.is_bare
 
 
 def test_displacement_is_named_where_it_moves_the_surface():

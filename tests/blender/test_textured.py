@@ -145,7 +145,12 @@ CASES = {
         lambda: node_material("Veil", "ShaderNodeBsdfPrincipled", Base_Color=(0.5, 0.5, 0.5, 1.0), Alpha=0.5),
         0.5 * 0.5 * IRRADIANCE + 0.5 * np.ones(3),
     ),
-    "glass": (lambda: node_material("Glass", "ShaderNodeBsdfGlass"), np.zeros(3)),
+    "half glass": (
+        lambda: node_material(
+            "Opal", "ShaderNodeBsdfPrincipled", Base_Color=(0.5, 0.5, 0.5, 1.0), Transmission_Weight=0.5
+        ),
+        0.5 * 0.5 * IRRADIANCE + 0.5 * np.ones(3),
+    ),
 }
 
 

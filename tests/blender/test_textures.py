@@ -265,6 +265,26 @@ def test_a_leaf_is_cut_out_by_the_alpha_of_its_image():
     assert ((texture.colours < 0.01) | (texture.colours > 0.99)).mean() > 0.9
 
 
+def test_what_goes_through_is_evaluated_by_blender_where_its_nodes_are_not_read():
+    material = node_material("Lace", "ShaderNodeBsdfPrincipled", Base_Color=(0.64, 0.64, 0.64, 1.0))
+    tree = material.node_tree
+    shader, steps = shader_of(material), tree.nodes.new("ShaderNodeMath")
+    steps.operation = "GREATER_THAN"
+    steps.inputs[1].default_value = 0.5
+    split = tree.nodes.new("ShaderNodeSeparateXYZ")
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], split.inputs[0])
+    tree.links.new(split.outputs["X"], steps.inputs[0])
+    tree.links.new(steps.outputs[0], shader.inputs["Alpha"])
+    socket_of(shader, "Transmission Weight").default_value = 0.5
+    sheet = add_sheet(material)
+    bpy.context.view_layer.update()
+    (mesh,) = extract(bpy.context, [sheet]).scene.meshes
+    shares = mesh.transmittance_texture.colours
+    # All of the side that is not there, and of the other what half of it, as glass, lets through.
+    assert np.isclose(shares, 1.0, atol=0.01).mean() == pytest.approx(0.5, abs=0.05)
+    assert np.isclose(shares, 0.4, atol=0.01).mean() == pytest.approx(0.5, abs=0.05)
+
+
 def test_mirrored_objects_keep_their_texture_where_it_is():
     sheet = add_sheet(painted(image_node))
     before, _ = by_us(sheet, "DIFFUSE")

@@ -13,6 +13,7 @@ from radiosity_bake.core.scene import PointLamp, Scene, Texture, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
 from radiosity_bake.core.textures import cell_centres
+from radiosity_bake.core.transmittance import fresnel
 from radiosity_bake.core.visibility import RayScene
 
 from tests.core.building import DARK, grid, mean_over
@@ -163,3 +164,54 @@ def test_relighting_refuses_another_share():
     with pytest.raises(ChangedSceneError, match="board"):
         relight(kept, room(sheet(0.6)))
     assert shape_of(sheet(0.0)) == shape_of(board(None))
+
+
+# ------------------------------------------------------------------------------------------------------------- glass
+
+
+def pane(name, low, high, refraction=1.5, share=1.0):
+    """A closed box of clear glass."""
+    size = np.subtract(high, low)
+    box = exact.closed_room(size, reflectance=0.0)
+    count = len(box.triangles)
+    return replace(
+        box,
+        name=name,
+        vertices=box.vertices + low,
+        triangles=box.triangles[:, ::-1],
+        corner_normals=-box.corner_normals[:, ::-1],
+        transmittance=np.full((count, 3), share),
+        refraction=np.full(count, refraction),
+        baked=False,
+    )
+
+
+def test_glass_reflects_what_fresnel_says():
+    straight = ((1.5 - 1.0) / (1.5 + 1.0)) ** 2
+    brewster = np.cos(np.arctan(1.5))
+    half = 0.5 * ((1.5**2 - 1.0) / (1.5**2 + 1.0)) ** 2
+    cosines, expected = np.array([1.0, 0.0, brewster], np.float32), [straight, 1.0, half]
+    # In single precision.
+    np.testing.assert_allclose(fresnel(cosines, np.full(3, 1.5, np.float32)), expected, rtol=1e-5)
+    np.testing.assert_allclose(fresnel(np.array([0.3], np.float32), np.ones(1, np.float32)), 0.0, atol=1e-12)
+
+
+def test_of_a_lamps_light_two_surfaces_of_a_pane_take_what_they_reflect():
+    floor = replace(grid("floor", 2, reflectance=0.0), vertices=grid("floor", 2).vertices * 1e-3 + [1.03, 0.98, 0])
+    glass = pane("pane", (0, 0, 0.5), (2, 2, 0.6), share=0.9)
+    free, behind = (light_on(bake(Scene((floor, *some), DARK, (lamp_at(1.8),)), COARSE)) for some in ([], [glass]))
+    # All of the floor lies under the lamp, and 4% are lost at each surface.
+    assert behind == pytest.approx((0.9 * 0.96) ** 2 * free, rel=1e-4)
+
+
+def test_under_an_even_sky_glass_takes_nothing_from_a_speck_on_the_ground():
+    speck = replace(grid("speck", 2, reflectance=0.0), vertices=grid("speck", 2).vertices * 1e-3 + [1.0, 1.0, 0])
+    glass = pane("pane", (-4, -4, 0.5), (6, 6, 0.6))
+    lit = light_on(bake(Scene((speck, glass), np.ones(3)), COARSE))
+    # What does not come through from above is reflected from below, so every ray ends in the sky.
+    assert lit == pytest.approx(1.0, rel=1e-3)
+
+
+def test_relighting_refuses_other_glass():
+    with_glass, other = (shape_of(pane("pane", (0, 0, 1), (2, 2, 1.1), refraction)) for refraction in (1.5, 1.4))
+    assert with_glass != other
