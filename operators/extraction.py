@@ -13,6 +13,7 @@ from ..core.errors import NothingToBakeError
 from ..core.scene import Floats, Lamp, LightGroup, Scene, SurfaceMesh
 from .appearance import Appearance, Colouring
 from .display import is_display
+from .drivers import failing_drivers
 from .lamps import lamp_of
 from .layers import Layers, joined_layers, layers_of
 from .linking import light_linking, linked_objects
@@ -78,6 +79,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
             reader.read()
         warnings += _misplaced(reader.targets, outputs, view_layer)
         warnings += _orphaned(participants.objects.difference(wanted), outputs)
+        warnings += failing_drivers(participants.everything(), (context.scene, context.scene.world))
     targets = tuple(reader.targets)
     _skip_missing(wanted, reader, skipped)
     if not targets:

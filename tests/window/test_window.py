@@ -29,3 +29,19 @@ def test_whatever_happens_while_a_bake_runs_ends_in_a_sentence_and_a_usable_file
     told = f"{done.stdout}\n{done.stderr}"
     assert done.returncode == 0, f"see {pictures}\n{told}"
     assert told.count("Traceback") == told.count(MEANT_TO_FAIL), told
+
+
+def test_blender_ends_well_in_the_middle_of_a_bake(real_blender, linux_zip):
+    pictures = PICTURES / real_blender.suite
+    done = play(
+        SCRIPTS / "quit.py",
+        pictures,
+        blender=real_blender,
+        extension=linux_zip,
+        arguments=["frames"],
+        timeout=240,
+        capture=True,
+    )
+    told = f"{done.stdout}\n{done.stderr}"
+    assert done.returncode == 0, told
+    assert "quitting" in told and "Traceback" not in told and "crash" not in told, told
