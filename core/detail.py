@@ -22,7 +22,7 @@ from .lit import Lit
 from .patches import PatchTree
 from .receivers import Receivers, receivers
 from .scene import Floats, Ints
-from .strips import widths
+from .strips import extents
 from .subdivision import Faces, conforming_faces
 from .surfaces import Surfaces
 
@@ -32,6 +32,9 @@ MOST_ROUNDS = 8
 
 WIDTHS_ON_STRIP = 4.0
 """Faces longer than a patch, and than so many widths of the strip that they are on, are split in any case."""
+
+FACES_ALONG_STRIP = 1024.0
+"""Unless they are shorter than this part of the strip."""
 
 
 @dataclass(frozen=True)
@@ -131,8 +134,8 @@ def light_up_in_detail(
         shells = np.zeros(len(surfaces.closed), dtype=bool)
         shells[surfaces.shell_of_triangle[triangle]] = True
         among = np.flatnonzero(shells[surfaces.shell_of_triangle])
-        width = widths(surfaces, among)[np.searchsorted(among, triangle)]
-        slender: Ints = leaf[shown.tree.sizes(leaf) > WIDTHS_ON_STRIP * width]
+        width, length = (extent[np.searchsorted(among, triangle)] for extent in extents(surfaces, among))
+        slender: Ints = leaf[shown.tree.sizes(leaf) > np.maximum(WIDTHS_ON_STRIP * width, length / FACES_ALONG_STRIP)]
         return slender
 
     def split_by_error(first_new: int) -> Ints:

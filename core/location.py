@@ -60,7 +60,7 @@ class Locator:
         root = triangle.copy()
         moving = np.flatnonzero(tree.root[triangle] < 0)
         if len(moving):
-            node, inside = tree.descend_halves(triangle[moving].astype(np.int64), weights[moving])
+            node, inside = tree.descend_to_coarse(triangle[moving].astype(np.int64), weights[moving])
             root[moving], weights[moving] = node, inside
         return root
 

@@ -15,24 +15,29 @@ from .geometry import edge_lengths, largest_edges, normalized, triangle_areas, t
 from .sampling import frames
 from .scene import Floats, Ints
 from .seams import Seams, cut_along
+from .slices import Slices, numbered, parts_of_edges, sliced, vertices_on_edges
 from .surfaces import Surfaces
 
-FOUR = 3
-"""Kind of a split into four by the edge midpoints; kinds 0 to 2 halve the edge from that corner to the next."""
+FOUR, SLICED = 3, 4
+"""Kinds of splits: into four by the edge midpoints, and into a row; kinds 0 to 2 cut the edge from that corner to the
+next."""
 
 LARGEST_ASPECT = 4.0
-"""Longest edge over lowest altitude above which the coarse triangulation halves a triangle (right isosceles: 2)."""
+"""Longest edge over lowest altitude above which the coarse triangulation slices a triangle (right isosceles: 2)."""
+
+LONGEST_ROW = 256
+"""Parts that the coarse triangulation cuts an edge into at most: a strip may be a million times as long as wide."""
 
 MOST_PIECES, PIECES_OF_EACH = 2**20, 8.0
 """Pieces that the coarse triangulation may make of slender triangles: so many, and these for each triangle there is.
 A sliver a mile long may be a billion times as long as the size that was asked for."""
 
-HALVING = float(np.log2(3.0))
-"""Power of its length over that of its pieces by which a sliver's pieces become more: three are half as long."""
+EDGES_CUT = 2.0
+"""Edges of a sliver that are about as long as the longest."""
 
 
 class PatchTree:
-    """Triangles, each either a leaf or split into two or four children.
+    """Triangles, each either a leaf, cut into two, split into four, or sliced into a row of pieces.
 
     Vertices are shared: an edge has one midpoint, whichever triangles of its mesh meet there, so leaves of equal level
     fit together. A node's children follow each other. What light is exchanged between are the `patches`: leaves, or the
@@ -50,10 +55,12 @@ class PatchTree:
         Index into the surfaces' triangles.
     weights : (n, 3, 3) float
         Barycentric coordinates of the node's corners in that triangle.
+    parent : (n,) int
+        -1 where there is none.
     first_child : (n,) int
         -1 for a leaf.
     kind : (n,) int
-        How the node is split (`FOUR` or the edge that is cut).
+        How the node is split (`FOUR`, `SLICED` or the edge that is cut).
     share : (n,) float
         Where that edge is cut, from its first corner.
     root : (n,) int
@@ -79,6 +86,7 @@ class PatchTree:
         self.corners: Ints = surfaces.triangles
         self.triangle: Ints = np.arange(count, dtype=np.int64)
         self.weights: Floats = np.broadcast_to(np.eye(3), (count, 3, 3)).copy()
+        self.parent: Ints = np.full(count, -1, dtype=np.int64)
         self.first_child: Ints = np.full(count, -1, dtype=np.int64)
         self.kind: NDArray[np.int8] = np.full(count, FOUR, dtype=np.int8)
         self.share: Floats = np.full(count, 0.5)
@@ -88,6 +96,7 @@ class PatchTree:
         self.clusters = Clusters.none()
         self.first_cluster = 0
         self.seams = Seams.none()
+        self._slices, self._first_slice = Slices.none(), 0
         self._edge_keys: Ints = np.zeros(0, dtype=np.int64)
         self._edge_midpoints: Ints = np.zeros(0, dtype=np.int64)
 
@@ -188,6 +197,7 @@ class PatchTree:
         self.corners = np.concatenate([self.corners, made.reshape(-1, 3)])
         self.triangle = np.concatenate([self.triangle, self.triangle[example]])
         self.weights = np.concatenate([self.weights, self.weights[example]])
+        self.parent = np.concatenate([self.parent, np.full(count, -1, dtype=np.int64)])
         self.first_child = np.concatenate([self.first_child, np.full(count, -1, dtype=np.int64)])
         self.kind = np.concatenate([self.kind, np.full(count, FOUR, dtype=np.int8)])
         self.share = np.concatenate([self.share, np.full(count, 0.5)])
@@ -214,10 +224,7 @@ class PatchTree:
 
     def ancestors(self, count: int) -> Ints:
         """The one of the first `count` nodes that each node is, or was split from, (n,); later clusters: themselves."""
-        above = np.arange(len(self))
-        for k in range(4):
-            split = np.flatnonzero((self.first_child >= 0) & ((self.kind == FOUR) | (k < 2)))
-            above[self.first_child[split] + k] = split
+        above = np.where(self.parent < 0, np.arange(len(self)), self.parent)
         above[:count] = np.arange(count)
         while True:
             farther = above[above]
@@ -260,7 +267,8 @@ class PatchTree:
         w0, w1, w2 = w[:, 0], w[:, 1], w[:, 2]
         h01, h12, h20 = (w0 + w1) / 2, (w1 + w2) / 2, (w2 + w0) / 2
         weights = np.stack([w0, h01, h20, h01, w1, h12, h20, h12, w2, h12, h20, h01], axis=1)
-        return self._add(nodes, np.full(len(nodes), FOUR, np.int8), corners, weights.reshape(-1, 3, 3), 4)
+        root, level = np.repeat(self.root[nodes], 4), np.repeat(self.level[nodes] + 1, 4)
+        return self._add(np.repeat(nodes, 4), corners, weights.reshape(-1, 3, 3), root, level)
 
     def bisect(self, nodes: Ints, edges: Ints, shares: Floats | None = None) -> Ints:
         """Cut one edge (0: 0-1, 1: 1-2, 2: 2-0) of each leaf; returns the children, two after two, (2 m,).
@@ -283,7 +291,36 @@ class PatchTree:
         t = self.share[nodes, None]
         cut = w[:, 0] * (1.0 - t) + w[:, 1] * t
         weights = np.stack([w[:, 0], cut, w[:, 2], cut, w[:, 1], w[:, 2]], axis=1).reshape(-1, 3, 3)
-        return self._add(nodes, edges.astype(np.int8), corners, weights, 2)
+        self.kind[nodes] = edges
+        return self._add_coarse(np.repeat(nodes, 2), corners, weights)
+
+    def slice(self, nodes: Ints, parts: Ints) -> Ints:
+        """Slice leaves (m,), ascending, whose edges have so many parts each (m, 3); once, before any split into four.
+
+        Returns their pieces, (p,).
+        """
+        corners = self.corners[nodes]
+        made = sliced(edge_lengths(self.points, corners), parts)
+        on_edges = self._points_on_edges(corners, parts)
+        self.kind[nodes] = SLICED
+        self._slices, self._first_slice = made, len(self)
+        parents = nodes[made.of]
+        return self._add_coarse(parents, on_edges[made.corners], made.weights @ self.weights[parents])
+
+    def _points_on_edges(self, corners: Ints, parts: Ints) -> Ints:
+        """Points of the parts of all edges, as `vertices_on_edges` counts them, made where there is none."""
+        first, parts = vertices_on_edges(parts).ravel(), parts.ravel()
+        on_edges = np.zeros(int((parts + 1).sum()), dtype=np.int64)
+        on_edges[first] = corners.ravel()
+        on_edges[first + parts] = np.roll(corners, -1, axis=1).ravel()
+        step = parts
+        while (halved := step > 1).any():
+            first, parts, step = first[halved], parts[halved], step[halved]
+            edge, number = numbered(parts // step)
+            start, length = first[edge] + number * step[edge], step[edge]
+            on_edges[start + length // 2] = self._halve(on_edges[start], on_edges[start + length])
+            step = step // 2
+        return on_edges
 
     def descend(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
         """Walk points down to the leaves they lie in.
@@ -304,25 +341,33 @@ class PatchTree:
         while len(moving):
             node, w = nodes[moving], weights[moving]
             child, inside = _child_of_four(w)
-            halved = np.flatnonzero(self.kind[node] != FOUR)
-            if len(halved):
-                split = node[halved]
-                child[halved], inside[halved] = _child_of_two(w[halved], self.kind[split], self.share[split])
-            nodes[moving] = self.first_child[node] + child
-            weights[moving] = inside
-            moving = moving[self.first_child[nodes[moving]] >= 0]
+            child += self.first_child[node]
+            cut = np.flatnonzero(self.kind[node] != FOUR)
+            if len(cut):
+                child[cut], inside[cut] = self._child_of_coarse(node[cut], w[cut])
+            nodes[moving], weights[moving] = child, inside
+            moving = moving[self.first_child[child] >= 0]
         return nodes, weights
 
-    def descend_halves(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
-        """As `descend`, but only through triangles that were cut, to the coarse patches."""
+    def descend_to_coarse(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
+        """As `descend`, but only through triangles that were cut or sliced, to the coarse patches."""
         nodes, weights = nodes.copy(), weights.copy()
         moving = np.flatnonzero(self.root[nodes] < 0)
         while len(moving):
-            node = nodes[moving]
-            child, weights[moving] = _child_of_two(weights[moving], self.kind[node], self.share[node])
-            nodes[moving] = self.first_child[node] + child
+            nodes[moving], weights[moving] = self._child_of_coarse(nodes[moving], weights[moving])
             moving = moving[self.root[nodes[moving]] < 0]
         return nodes, weights
+
+    def _child_of_coarse(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
+        """The child that points lie in, of nodes (m,) that were cut or sliced, and their weights (m, 2) there."""
+        child, inside = self.first_child[nodes], weights.copy()
+        is_sliced = self.kind[nodes] == SLICED
+        one, two = np.flatnonzero(is_sliced), np.flatnonzero(~is_sliced)
+        piece, inside[one] = self._slices.found(child[one] - self._first_slice, weights[one])
+        child[one] = piece + self._first_slice
+        half, inside[two] = _child_of_two(weights[two], self.kind[nodes[two]], self.share[nodes[two]])
+        child[two] += half
+        return child, inside
 
     @staticmethod
     def _ordered(starts: Ints, ends: Ints) -> tuple[Ints, Ints]:
@@ -354,22 +399,24 @@ class PatchTree:
         self._edge_midpoints = np.concatenate([self._edge_midpoints, made])[order]
         return self.midpoints(starts, ends)
 
-    def _add(self, nodes: Ints, kind: NDArray[np.int8], corners: Ints, weights: Floats, each: int) -> Ints:
-        count = len(self)
-        children = np.arange(count, count + each * len(nodes))
-        self.first_child[nodes] = children[::each]
-        self.kind[nodes] = kind
+    def _add_coarse(self, parents: Ints, corners: Ints, weights: Floats) -> Ints:
+        """Add coarse patches that `parents` were cut or sliced into."""
+        self.root[parents] = -1
+        children = len(self) + np.arange(len(parents))
+        return self._add(parents, corners, weights, children, np.zeros(len(parents), dtype=np.int64))
+
+    def _add(self, parents: Ints, corners: Ints, weights: Floats, root: Ints, level: Ints) -> Ints:
+        """Add children, those of a parent one after the other."""
+        children = len(self) + np.arange(len(parents))
+        begin = np.flatnonzero(np.diff(parents, prepend=-1))
+        self.first_child[parents[begin]] = children[begin]
         self.corners = np.concatenate([self.corners, corners])
-        self.triangle = np.concatenate([self.triangle, np.repeat(self.triangle[nodes], each)])
+        self.triangle = np.concatenate([self.triangle, self.triangle[parents]])
         self.weights = np.concatenate([self.weights, weights])
+        self.parent = np.concatenate([self.parent, parents])
         self.first_child = np.concatenate([self.first_child, np.full(len(children), -1, dtype=np.int64)])
         self.kind = np.concatenate([self.kind, np.full(len(children), FOUR, dtype=np.int8)])
         self.share = np.concatenate([self.share, np.full(len(children), 0.5)])
-        if each == 4:
-            root, level = np.repeat(self.root[nodes], each), np.repeat(self.level[nodes] + 1, each)
-        else:
-            self.root[nodes] = -1
-            root, level = children, np.zeros(len(children), dtype=np.int64)
         self.root, self.level = np.concatenate([self.root, root]), np.concatenate([self.level, level])
         self.patch = np.concatenate([self.patch, children])
         return children
@@ -417,14 +464,13 @@ def _child_of_two(w: NDArray[np.float32], kind: NDArray[np.int8], share: Floats)
 
 
 def coarse_patches(surfaces: Surfaces, smallest: float, lines: Crossings | None = None) -> PatchTree:
-    """The controlled triangulation: the surfaces' triangles, the slender ones halved along their longest edge.
+    """The controlled triangulation: the surfaces' triangles, the slender ones sliced into rows of pieces.
 
     Before, triangles are cut along the lines on which sheets cross them.
 
-    Halving the longest edge never lowers the smallest angle by more than half (Rivara 1984). It ends where the pieces
-    are no longer than a few times the width of the triangle they come from, so that a strip becomes a row of them, and
-    where an edge is shorter than four times `smallest`, so that refinement below still has room, or sooner where there
-    would be more than `MOST_PIECES`.
+    Pieces are no longer than a few times the width of the triangle they come from, so that a strip becomes a row of
+    them. But they are longer than twice `smallest`, so that refinement below still has room, and longer still where a
+    row would have more than `LONGEST_ROW` of them, or all together `MOST_PIECES`.
     """
     tree = PatchTree(surfaces)
     if lines is not None and len(lines.triangle):
@@ -432,23 +478,24 @@ def coarse_patches(surfaces: Surfaces, smallest: float, lines: Crossings | None 
         crossed[surfaces.shell_of_triangle[lines.triangle]] = True
         cut_along(tree, lines, crossed[surfaces.shell_of_triangle])
     nodes = tree.leaves()
-    longest = tree.sizes(nodes)
+    corners = tree.corners[nodes]
+    lengths = edge_lengths(tree.points, corners)
+    longest = lengths.max(axis=1, initial=0.0)
     limit = _longest_pieces(tree.areas(nodes), longest, smallest)
     most = MOST_PIECES + PIECES_OF_EACH * len(nodes)
-    if (np.maximum(longest / limit, 1.0) ** HALVING).sum() > most:
-        limit = np.maximum(limit, ((longest**HALVING).sum() / most) ** (1.0 / HALVING))
-    while len(nodes):
-        lengths = edge_lengths(tree.points, tree.corners[nodes])
-        slender = lengths.max(axis=1, initial=0.0) > limit
-        nodes, lengths, limit = nodes[slender], lengths[slender], np.repeat(limit[slender], 2)
-        nodes = tree.bisect(nodes, lengths.argmax(axis=1))
+    if (EDGES_CUT * np.maximum(longest / limit, 1.0)).sum() > most:
+        limit = np.maximum(limit, EDGES_CUT * longest.sum() / most)
+    # Of what is so thin that two corners are at the same place, pieces would have no area.
+    places = tree.place_of_point[corners]
+    slender = np.flatnonzero((longest > limit) & (places != np.roll(places, 1, axis=1)).all(axis=1))
+    tree.slice(nodes[slender], parts_of_edges(lengths[slender], limit[slender]))
     return tree
 
 
 def _longest_pieces(areas: Floats, longest: Floats, smallest: float) -> Floats:
     """How long the pieces of each triangle may be, (t,), from its area and its longest edge."""
     width = 2.0 * areas / np.maximum(longest, np.finfo(np.float64).tiny)
-    return np.maximum(LARGEST_ASPECT * width, 4.0 * smallest)
+    return np.maximum(np.maximum(LARGEST_ASPECT * width, 4.0 * smallest), longest / LONGEST_ROW)
 
 
 def coarse_count(surfaces: Surfaces, smallest: float) -> float:

@@ -21,6 +21,10 @@ UNIFORM_MET = "every fragment is at the minimum size"
 ROWS_THAT_TELL = 64
 """Rows that are asked first whether any form factor is above the threshold."""
 
+LEAST_AREA = 0.5
+"""Area below which patches are not split, in squares of the minimum size n: that of a triangle of size 2n which is four
+times as long as wide. Right isosceles ones have twice as much."""
+
 LIMIT_MET = "the memory limit allows no more fragments"
 
 
@@ -159,7 +163,7 @@ def refine_uniformly(
     tree, rounds, ended = transport.tree, [], UNIFORM_MET
     while True:
         patches = tree.patches()
-        large = patches[tree.sizes(patches) >= 2.0 * smallest]
+        large = patches[_may_be_split(tree, patches, smallest)]
         if len(large) == 0:
             break
         if (len(patches) + 3 * len(large)) * transport.rays_per_row > most_rays:
@@ -177,8 +181,15 @@ def refine_uniformly(
 def _large(tree: PatchTree, smallest: float) -> NDArray[np.bool_]:
     """Whether each node is a patch that may be split, (nodes,)."""
     large, patches = np.zeros(len(tree), dtype=bool), tree.patches()
-    large[patches] = tree.sizes(patches) >= 2.0 * smallest
+    large[patches] = _may_be_split(tree, patches, smallest)
     return large
+
+
+def _may_be_split(tree: PatchTree, nodes: Ints, smallest: float) -> NDArray[np.bool_]:
+    """Whether nodes are of size m = 2n or more, and no thin slices that only become thinner, (m,)."""
+    slender = tree.areas(nodes) < LEAST_AREA * smallest * smallest
+    result: NDArray[np.bool_] = (tree.sizes(nodes) >= 2.0 * smallest) & ~slender
+    return result
 
 
 def _highest_factors(transport: Transport, shares: Shares, threshold: float) -> Floats:

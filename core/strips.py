@@ -17,8 +17,10 @@ ROUND = 0.6
 """Cosine between the normals of triangles above which a surface goes on across their edge, flat or round."""
 
 
-def widths(surfaces: Surfaces, triangle: Ints) -> Floats:
-    """Width of the piece that each triangle is part of, were it a long strip: twice its area over its outline.
+def extents(surfaces: Surfaces, triangle: Ints) -> tuple[Floats, Floats]:
+    """Width and length of the piece that each triangle is part of, were it a long strip.
+
+    They are twice its area over its outline, and half of that.
 
     Parameters
     ----------
@@ -27,11 +29,11 @@ def widths(surfaces: Surfaces, triangle: Ints) -> Floats:
 
     Returns
     -------
-    (n,) float, scene units
+    width, length : (n,) float, scene units
     """
     count = len(triangle)
     if count == 0:
-        return np.zeros(0)
+        return np.zeros(0), np.zeros(0)
     places = surfaces.place_of_point[surfaces.triangles[triangle]]
     start, end = places.ravel(), np.roll(places, -1, axis=1).ravel()
     key = np.minimum(start, end) * np.int64(len(surfaces.points)) + np.maximum(start, end)
@@ -48,5 +50,5 @@ def widths(surfaces: Surfaces, triangle: Ints) -> Floats:
     outline = np.bincount(np.repeat(piece, 3), weights=np.where(inner, 0.0, length), minlength=count)
     area = np.bincount(piece, weights=surfaces.areas[triangle], minlength=count)
     # A ball has no outline, and is as wide as can be.
-    width: Floats = np.divide(2.0 * area, outline, out=np.full(count, np.inf), where=outline > 0.0)[piece]
-    return width
+    width: Floats = np.divide(2.0 * area, outline, out=np.full(count, np.inf), where=outline > 0.0)
+    return width[piece], outline[piece] / 2.0

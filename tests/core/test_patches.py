@@ -36,7 +36,7 @@ def split_at_random(tree: PatchTree, times: int, seed: int = 0) -> PatchTree:
 
 @pytest.fixture(scope="module")
 def tree():
-    """Bisected strip and square, split unevenly, and one corner split far deeper than the tables go."""
+    """Sliced strip and square, split unevenly, and one corner split far deeper than the tables go."""
     tree = split_at_random(coarse_patches(slender_strip(), 0.5), 4)
     node = tree.leaves()[:1]
     for _ in range(DEEPEST_TABLE + 3):
@@ -199,7 +199,7 @@ def aspect(tree: PatchTree, nodes):
 
 
 @pytest.mark.parametrize("length", [10, 30, 100])
-def test_slender_triangles_are_halved_into_better_shaped_ones(length):
+def test_slender_triangles_are_sliced_into_better_shaped_ones(length):
     surfaces = surfaces_of(exact.rectangle("strip", (0, 0, 0), (length, 0, 0), (0, 1, 0)))
     before, tree = PatchTree(surfaces), coarse_patches(surfaces, 0.1)
     assert aspect(before, before.leaves()).min() > length
@@ -227,7 +227,7 @@ def test_well_shaped_triangles_stay_whole():
     assert len(square) == 2
 
 
-def test_halving_stops_where_refinement_would_have_no_room():
+def test_slicing_stops_where_refinement_would_have_no_room():
     tree = coarse_patches(slender_strip(), 5.0)
     made = tree.leaves()[tree.leaves() >= 4]
     # Halves of an edge of 4 n and more.

@@ -8,20 +8,21 @@ from radiosity_bake.core.bake import bake
 from radiosity_bake.core.detail import WIDTHS_ON_STRIP
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
-from radiosity_bake.core.strips import widths
+from radiosity_bake.core.strips import extents
 from radiosity_bake.core.surfaces import join
 
 from tests.core.building import DARK, block
 from tests.scenes import exact
 
 
-def width(mesh):
+def width_and_length(mesh):
     surfaces = join(Scene((mesh,), DARK))
-    return widths(surfaces, np.arange(len(surfaces.triangles)))
+    return extents(surfaces, np.arange(len(surfaces.triangles)))
 
 
 def test_the_width_of_a_long_side_is_that_of_a_strip_and_of_a_square_half_its_edge():
-    leg = width(block("leg", (0, 0, 0), (0.05, 0.05, 1.0)))
+    leg, length = width_and_length(block("leg", (0, 0, 0), (0.05, 0.05, 1.0)))
+    assert length.max() == pytest.approx(1.05)
     assert leg.max() == pytest.approx(2 * 0.05 * 1.0 / (2 * 1.05))
     assert leg.min() == pytest.approx(0.05 / 2)
 
@@ -36,12 +37,12 @@ def test_a_surface_goes_on_around_a_rod_but_not_around_a_square_one(sides, round
     triangles = np.concatenate([np.stack([k, j, j + sides], 1), np.stack([k, j + sides, k + sides], 1)])
     side = 2 * 0.01 * np.sin(np.pi / sides)
     expected = 1.0 if round_surface else side / (1 + side)
-    assert width(surface_mesh("rod", vertices, triangles)) == pytest.approx(np.full(2 * sides, expected))
+    assert width_and_length(surface_mesh("rod", vertices, triangles))[0] == pytest.approx(np.full(2 * sides, expected))
 
 
 def test_a_ball_has_no_outline():
     points, triangles = exact.icosphere(2)
-    assert np.isinf(width(surface_mesh("ball", points, triangles))).all()
+    assert np.isinf(width_and_length(surface_mesh("ball", points, triangles))[0]).all()
 
 
 def test_no_face_of_a_strip_is_longer_than_a_patch():

@@ -35,6 +35,15 @@ def test_the_light_is_right_where_methods_fail(name, value):
     assert baked(sweep, case)["said"] == pytest.approx(case.truth, rel=sweep.limit)
 
 
+def test_the_light_on_the_longest_strip_is_right_in_few_vertices():
+    sweep = SWEEPS["aspect"]
+    case = sweep.case_of(1e5)
+    found = baked(sweep, case, "DRAFT")
+    assert found["said"] == pytest.approx(case.truth, rel=sweep.limit)
+    # Two strips of 1,024 lengths and four widths, and as many again where the light asks for them.
+    assert found["vertices"] < 2 * 2 * 1025 * 5
+
+
 @pytest.mark.parametrize(
     ("name", "value"), [("wall", 1e-2), ("wall", 1e-6), ("through", 1.0), ("through", 1e-2), ("through", 1e-5)]
 )

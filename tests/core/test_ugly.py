@@ -170,9 +170,9 @@ def test_what_is_too_large_for_the_rest_of_the_scene_is_named_where_nothing_is_l
         bake(Scene((FLOOR, hidden), WHITE), COARSE)
 
 
-def test_slivers_are_not_halved_without_end(monkeypatch):
+def test_many_slivers_have_no_more_pieces_than_there_is_room_for(monkeypatch):
     monkeypatch.setattr("radiosity_bake.core.patches.MOST_PIECES", 1000)
-    sliver = surface_mesh("sliver", [(0, 0, 0), (1e4, 0, 0), (1e4, 1e-3, 0)], [(0, 1, 2)])
-    tree = coarse_patches(join(Scene((sliver,), DARK)), 1e-6)
-    # Three pieces are half as long, and the last halving may leave them up to half as long as they could be.
-    assert 300 < len(tree.leaves()) <= 3 * 1008
+    slivers = [surface_mesh(f"sliver {k}", [(0, 0, k), (1e4, 0, k), (1e4, 0.1, k)], [(0, 1, 2)]) for k in range(10)]
+    tree = coarse_patches(join(Scene(tuple(slivers), DARK)), 1e-6)
+    # The last halving may leave pieces up to half as long as they could be.
+    assert 500 < len(tree.leaves()) <= 2 * 1080
