@@ -4,7 +4,19 @@
 
 import bpy
 
-from . import animation, bake, command, doors, object_settings, record, relight, restore, settings, transports
+from . import (
+    animation,
+    bake,
+    command,
+    doors,
+    object_settings,
+    overrides,
+    record,
+    relight,
+    restore,
+    settings,
+    transports,
+)
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
@@ -31,6 +43,7 @@ def register() -> None:
         type=object_settings.ObjectSettings, override={"LIBRARY_OVERRIDABLE"}
     )
     transports.register()
+    overrides.register()
     command.register()
 
 
@@ -38,6 +51,7 @@ def unregister() -> None:
     """Unregister in reverse; a bake that still runs is ended."""
     doors.stop_running_bake()
     command.unregister()
+    overrides.unregister()
     transports.unregister()
     del bpy.types.Object.radiosity_settings
     del bpy.types.Object.radiosity
