@@ -153,7 +153,7 @@ def _ray_scene(
 
 def _lit_sides(surfaces: Surfaces, rays: RayScene, settings: BakeSettings) -> NDArray[np.bool_]:
     """Whether light reaches the front and the back of each shell, (shells, 2), through what lets some of it pass."""
-    met = surfaces.seen & surfaces.shadow & ~surfaces.is_partly_clear()
+    met = surfaces.seen & surfaces.shadow & ~surfaces.let_pass()
     if met.all():
         return lit_sides(surfaces, rays, settings.seed)
     with closing(_ray_scene(surfaces, met, met, settings)) as solids:

@@ -17,7 +17,7 @@ from .near_lamps import near_shares
 from .patches import PatchTree
 from .rows import ESCAPED, Cover, Shares
 from .scene import UNLINKED, Floats, Ints, Texture
-from .solve import Exchange, Solution
+from .solve import Exchange, Solution, Translucence
 from .surfaces import Surfaces
 from .textures import mean_colours
 from .transmittance import of_opaque
@@ -155,6 +155,7 @@ class Balance:
         Share of the area that is.
     means : TriangleMeans
     reflectance, emission : (m, 3) float
+    translucence : Translucence or None
     """
 
     elements: Ints
@@ -167,12 +168,14 @@ class Balance:
     means: TriangleMeans
     reflectance: Floats
     emission: Floats
+    translucence: Translucence | None
 
     def recoloured(self, surfaces: Surfaces) -> Balance:
-        """The same elements, with the reflectance and emission that `surfaces` have."""
+        """The same elements, with the reflectance, translucence and emission that `surfaces` have."""
         means = self.means
         emission = emission_of_sides(means, self.base, surfaces)
-        return replace(self, reflectance=means.reflectance(surfaces), emission=emission)
+        silky = translucence_of(means, self.base, self.elements, surfaces)
+        return replace(self, reflectance=means.reflectance(surfaces), emission=emission, translucence=silky)
 
     def from_world(self, world: Floats) -> Floats:
         """Irradiance over pi of the elements by what their rays see of the world, (m, 3), without its suns."""
@@ -208,7 +211,28 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         means,
         means.reflectance(surfaces),
         emission_of_sides(means, base, surfaces),
+        translucence_of(means, base, elements, surfaces),
     )
+
+
+def translucence_of(means: TriangleMeans, base: Ints, elements: Ints, surfaces: Surfaces) -> Translucence | None:
+    """What elements send on of the light on their other sides, None where none does.
+
+    Parameters
+    ----------
+    means : TriangleMeans
+        Over the elements.
+    base, elements : (m,) int
+        As of `Balance`.
+    """
+    if surfaces.translucence is None:
+        return None
+    share = means.of_opaque(means.of(surfaces.translucence, surfaces.translucence_texture), surfaces)
+    number = np.full(int(max(elements.max(), base.max() | 1)) + 1, -1, dtype=np.int64)
+    number[elements] = np.arange(len(elements))
+    other = number[base ^ 1]
+    # Of what was not traced, no light is known.
+    return Translucence(np.where(other[:, None] >= 0, np.minimum(share, 1.0), 0.0), other)
 
 
 def emission_of_sides(means: TriangleMeans, elements: Ints, surfaces: Surfaces) -> Floats:
@@ -377,7 +401,8 @@ def energy(
     world = float((met * (balance.from_world(surfaces.world) + from_suns)).sum())
     lamps = float((met * from_lamps).sum())
     reflected = float((met * solution.reflected).sum())
-    absorbed = float((met * (1.0 - balance.reflectance) * solution.incident).sum())
+    sent_on = balance.reflectance if balance.translucence is None else balance.reflectance + balance.translucence.share
+    absorbed = float((met * (1.0 - sent_on) * solution.incident).sum())
     escaped = float(((area * emission + met * solution.reflected) * balance.escape[:, None]).sum())
     total = emitted + world + lamps
     return {

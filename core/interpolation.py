@@ -101,10 +101,19 @@ class InterpolatedRadiance:
         Emitted radiance that rays are to see.
     solved : (places, 3) float
         What places show that lie on no face: meshes that are not baked, twins of covered elements.
+    translucence : (cells, 3) float32 or None
     """
 
-    def __init__(self, on_faces: PlacesOnFaces, reflectance: Singles, emission: Floats, solved: Floats) -> None:
+    def __init__(
+        self,
+        on_faces: PlacesOnFaces,
+        reflectance: Singles,
+        emission: Floats,
+        solved: Floats,
+        translucence: Singles | None = None,
+    ) -> None:
         self._on_faces, self._solved = on_faces, solved
+        self._translucence = None if translucence is None else translucence[on_faces.place >> 1]
         self._reflectance = reflectance[on_faces.place >> 1]
         self._emission = emission.astype(np.float32)[on_faces.triangle]
 
@@ -120,6 +129,11 @@ class InterpolatedRadiance:
         known = np.isfinite(irradiance[:, 0]) & ~(there.whole & steep[there.side])
         result = self._solved.copy()
         reflected = self._reflectance * irradiance
+        if self._translucence is not None:
+            silky = np.flatnonzero(self._translucence.any(axis=1))
+            behind = sum(share[silky] * corners[there.side[silky] ^ 1, k] for k, share in enumerate(there.shares))
+            known[silky] &= np.isfinite(behind[:, 0])
+            reflected[silky] += self._translucence[silky] * behind
         reflected *= self._balanced(reflected, known)
         result[there.place[known]] = (self._emission + reflected)[known]
         lit = np.zeros(len(result), dtype=bool)

@@ -78,11 +78,13 @@ class PatchLight:
     seen : (places, 3) float, W m^-2 sr^-1
         What rays see of it.
     reflectance : (cells, 3) float32
+    translucence : (cells, 3) float32 or None
     """
 
     solution: Solution
     seen: Floats
     reflectance: Singles
+    translucence: Singles | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,20 +126,29 @@ def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
     """
     balance, emitters = patches.balance, patches.emitters
     direct = unreflected_light(balance, patches.direct, emitters, surfaces)
-    solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas)
+    solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas, balance.translucence)
     check_solved(solution, surfaces)
     cells = patches.cells
     seen = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)[cells.element]
     reflectance = surfaces.reflectance[cells.triangle].astype(np.float32)
-    if surfaces.reflectance_texture is not None or surfaces.transmittance is not None:
+    translucence = None
+    if surfaces.reflectance_texture is not None or surfaces.let_pass().any():
         # The patch has one irradiance, but rays see what the texture makes of it.
         varied = np.flatnonzero(surfaces.vary(cells.triangle))
-        reflectance[varied] = surfaces.opaque_reflectance_over(cells.triangle[varied], cells.corners(varied))
+        triangle, corners = cells.triangle[varied], cells.corners(varied)
+        whole = surfaces.reflectance_over(triangle, corners)
+        reflectance[varied] = surfaces.of_opaque_parts(whole, triangle, corners)
         incident = np.zeros((int(cells.element.max()) + 1, 3))
         incident[balance.elements] = solution.incident
-        for side in (2 * varied, 2 * varied + 1):
+        if surfaces.translucence is not None:
+            translucence = np.zeros_like(reflectance)
+            whole = surfaces.translucence_over(triangle, corners)
+            translucence[varied] = surfaces.of_opaque_parts(whole, triangle, corners)
+        for side, other in ((2 * varied, 2 * varied + 1), (2 * varied + 1, 2 * varied)):
             seen[side] = incident[cells.element[side]] * reflectance[varied]
-    return PatchLight(solution, seen, reflectance)
+            if translucence is not None:
+                seen[side] += incident[cells.element[other]] * translucence[varied]
+    return PatchLight(solution, seen, reflectance, translucence)
 
 
 def looked_again(
@@ -150,7 +161,7 @@ def looked_again(
 ) -> tuple[Lit, Radiance]:
     """Look the gather rays up again in the light of the vertices; returns the faces' light and what rays saw last."""
     left = left_emission(surfaces, patches.emitters)
-    interpolated = InterpolatedRadiance(on_faces, light.reflectance, left, light.seen)
+    interpolated = InterpolatedRadiance(on_faces, light.reflectance, left, light.seen, light.translucence)
     for _ in range(LOOKS_BESIDE_WALLS if on_faces.beside_walls else LOOKS):
         radiance = Radiance.of(patches.cells, interpolated.at(shown), surfaces.world)
         shown = replace(shown, gathered=look_again(workers, radiance, shown.gathered))

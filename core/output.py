@@ -99,8 +99,8 @@ class _SideLight:
         return values
 
 
-def _colours_at_corners(surfaces: Surfaces, faces: Faces, chosen: Ints) -> tuple[Floats, Floats]:
-    """Reflectance and emission at the corners of all faces of a mesh, (f, 3, 3) each; not to be written to."""
+def _colours_at_corners(surfaces: Surfaces, faces: Faces, chosen: Ints) -> tuple[Floats, Floats, Floats | None]:
+    """Reflectance, emission and translucence at the corners of all faces of a mesh, (f, 3, 3); not to be written to."""
     triangle = faces.triangle[chosen]
 
     def of_corners(colours: Floats, texture: Texture | None) -> Floats:
@@ -113,7 +113,18 @@ def _colours_at_corners(surfaces: Surfaces, faces: Faces, chosen: Ints) -> tuple
     return (
         of_corners(surfaces.reflectance, surfaces.reflectance_texture),
         of_corners(surfaces.emission, surfaces.emission_texture),
+        None if surfaces.translucence is None else of_corners(surfaces.translucence, surfaces.translucence_texture),
     )
+
+
+def _sent(
+    reflectance: Floats, translucence: Floats | None, front: Floats, back: Floats | None
+) -> tuple[Floats, Floats]:
+    """What both sides of faces reflect and send on of each other's light, (f, 3, 3) each."""
+    behind = np.zeros_like(front) if back is None else back
+    if translucence is None:
+        return reflectance * front, reflectance * behind
+    return reflectance * front + translucence * behind, reflectance * behind + translucence * front
 
 
 def _original(
@@ -123,7 +134,7 @@ def _original(
     mesh = scene.meshes[number]
     place = surfaces.input_triangle[faces.triangle[chosen]]
     count = len(mesh.triangles)
-    reflectance, emission = _colours_at_corners(surfaces, faces, chosen)
+    reflectance, emission, translucence = _colours_at_corners(surfaces, faces, chosen)
 
     def spread(values: Floats) -> Floats:
         full = np.zeros((count, 3, 3))
@@ -131,10 +142,11 @@ def _original(
         return full
 
     front, back = light.fronts(chosen), light.backs(chosen) if light.have_backs(chosen) else None
-    irradiance, radiosity = spread(front), spread(emission + reflectance * front)
+    sent, sent_behind = _sent(reflectance, translucence, front, back)
+    irradiance, radiosity = spread(front), spread(emission + sent)
     behind = None if back is None else spread(back)
     emission_behind = np.where(surfaces.front_only[faces.triangle[chosen], None, None], 0.0, emission)
-    radiosity_behind = None if back is None else spread(emission_behind + reflectance * back)
+    radiosity_behind = None if back is None else spread(emission_behind + sent_behind)
     return BakedMesh(
         mesh=number,
         vertices=mesh.vertices,
@@ -162,7 +174,7 @@ def _refined(
         Faces that are lit from behind.
     """
     has_backs = light.have_backs(chosen)
-    reflectance, emission = _colours_at_corners(surfaces, faces, chosen)
+    reflectance, emission, translucence = _colours_at_corners(surfaces, faces, chosen)
     # Blender crashes when it computes normals of faces that have a corner twice.
     a, b, c = faces.corners[chosen].T
     sound = np.flatnonzero((a != b) & (b != c) & (c != a))
@@ -186,15 +198,19 @@ def _refined(
         over = over[:, None, None]
         bright_behind = np.where(surfaces.front_only[faces.triangle[some], None, None], 0.0, bright)
         irradiance, normals = light.fronts(some), faces.taken(some).corner_normals(surfaces)
-        found = {"barycentric": faces.weights[some]}
+        found: dict[str, Floats] = {"barycentric": faces.weights[some]}
+        behind: Floats | None = None
         if has_backs:
             back = light.backs(some)
             irradiance, behind = np.where(over, back, irradiance), np.where(over, irradiance, back)
             normals = np.where(over, -normals, normals)
             found["irradiance_back"] = behind
-            found["radiosity_back"] = np.where(over, bright, bright_behind) + pale * behind
+        silky = None if translucence is None else translucence[sound[part]]
+        sent, sent_behind = _sent(pale, silky, irradiance, behind)
+        if behind is not None:
+            found["radiosity_back"] = np.where(over, bright, bright_behind) + sent_behind
         found["corner_normals"], found["irradiance"] = normals, irradiance
-        found["radiosity"] = np.where(over, bright_behind, bright) + pale * irradiance
+        found["radiosity"] = np.where(over, bright_behind, bright) + sent
         for name in names:
             values[name][part] = np.take_along_axis(found[name], order[:, :, None], axis=1)
     if has_backs and not values["irradiance_back"].any():

@@ -114,7 +114,7 @@ def lit_sides(surfaces: Surfaces, rays: RayScene, seed: int) -> NDArray[np.bool_
     lit[emits & ~surfaces.closed, 1] = True
     lit[np.flatnonzero(housing), inside[housing]] = False
     # What lets light through has light on both sides.
-    lit[shell[surfaces.is_partly_clear()]] = True
+    lit[shell[surfaces.let_pass()]] = True
     # A shell that no light reaches at all shows its front, black.
     lit[~lit.any(axis=1), 0] = True
     return lit
@@ -219,7 +219,7 @@ def _first_of_each(side: Ints, walk: Ints) -> Ints:
 
 def _passable(surfaces: Surfaces) -> NDArray[np.bool_]:
     """Shells that some light goes through, (shells,): walks take no notice of them."""
-    passable = ~(surfaces.seen & surfaces.shadow) | surfaces.is_partly_clear()
+    passable = ~(surfaces.seen & surfaces.shadow) | surfaces.let_pass()
     result: NDArray[np.bool_] = (
         np.bincount(surfaces.shell_of_triangle, weights=passable, minlength=len(surfaces.closed)) > 0
     )

@@ -137,9 +137,11 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
 
 
 def _transmittance_of(mesh: SurfaceMesh) -> list[NDArray[Any]]:
-    """All that tells what goes through a mesh; nothing where nothing does."""
+    """All that tells what goes through a mesh and which of its triangles are translucent; nothing where none is."""
     share, texture, glass = mesh.transmittance, mesh.transmittance_texture, mesh.refraction
-    found: list[NDArray[Any]] = [] if share is None or not share.any() else [share]
+    silky = mesh.translucent()
+    found: list[NDArray[Any]] = [silky] if silky.any() else []
+    found += [] if share is None or not share.any() else [share]
     found += [] if texture is None else [texture.triangle, texture.along, texture.colours]
     return found if glass is None or (glass == 1.0).all() else [*found, glass]
 

@@ -87,6 +87,10 @@ class SurfaceMesh:
         Of the triangles over which they vary, in place of what is above.
     clear : (t,) bool or None
         Triangles that light goes through as if they were not there.
+    translucence : (t, 3) float, 0..1, or None
+        Share of the light on one side of each triangle that leaves the other side evenly in all directions, linear RGB.
+    translucence_texture : Texture or None
+        Of the triangles over which it varies.
     transmittance : (t, 3) float, 0..1, or None
         Share of the light that goes straight through each triangle, linear RGB. Reflectance and emission are what it
         leaves, as means over holes and all.
@@ -113,6 +117,8 @@ class SurfaceMesh:
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
     clear: NDArray[np.bool_] | None = None
+    translucence: Floats | None = None
+    translucence_texture: Texture | None = None
     transmittance: Floats | None = None
     transmittance_texture: Texture | None = None
     refraction: Floats | None = None
@@ -130,7 +136,17 @@ class SurfaceMesh:
 
     def without_reflectance(self) -> SurfaceMesh:
         """The same mesh, black."""
-        return replace(self, reflectance=np.zeros_like(self.reflectance), reflectance_texture=None)
+        black = np.zeros_like(self.reflectance)
+        return replace(self, reflectance=black, reflectance_texture=None, translucence=None, translucence_texture=None)
+
+    def translucent(self) -> NDArray[np.bool_]:
+        """Triangles of which one side sends on light of the other, (t,)."""
+        some = np.zeros(len(self.triangles), dtype=bool)
+        if self.translucence is not None:
+            some |= (self.translucence > 0.0).any(axis=1)
+        if self.translucence_texture is not None:
+            some[self.translucence_texture.triangle] = True
+        return some
 
 
 @dataclass(frozen=True, eq=False)

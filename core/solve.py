@@ -56,13 +56,33 @@ class Exchange:
 
 
 @dataclass(frozen=True, eq=False)
+class Translucence:
+    """What elements send on of the light on their other sides.
+
+    Attributes
+    ----------
+    share : (m, 3) float
+    other : (m,) int
+        The element on the other side; any where the share is 0.
+    """
+
+    share: Floats
+    other: Ints
+
+    def sent_on(self, incident: Floats) -> Floats:
+        """Radiance by the irradiance over pi of all elements, (m, 3)."""
+        radiance: Floats = self.share * incident[self.other]
+        return radiance
+
+
+@dataclass(frozen=True, eq=False)
 class Solution:
     """The solved balance and how it ended.
 
     Attributes
     ----------
     reflected : (m, 3) float, W m^-2 sr^-1
-        Reflected radiance of each element.
+        Radiance that each element reflects, and sends on from its other side.
     incident : (m, 3) float, W m^-2 sr^-1
         Irradiance over pi of each element.
     """
@@ -74,8 +94,12 @@ class Solution:
     converged: bool
 
 
-def solve_balance(exchange: Exchange, reflectance: Floats, direct: Floats, areas: Floats) -> Solution:
+def solve_balance(
+    exchange: Exchange, reflectance: Floats, direct: Floats, areas: Floats, translucence: Translucence | None = None
+) -> Solution:
     """Solve L = rho (E_direct / pi + F L) for the reflected radiance L of m elements.
+
+    With translucence, the share tau of the same on the other side comes to it.
 
     By restarted GMRES (Saad & Schultz 1986) in the area-weighted inner product: many bounces cost few iterations, as
     the interreflections of a room have one slow mode.
@@ -87,12 +111,18 @@ def solve_balance(exchange: Exchange, reflectance: Floats, direct: Floats, areas
     direct : (m, 3) float, W m^-2 sr^-1
         Irradiance over pi that is not reflected radiance of an element: emitters, world.
     areas : (m,) float
+    translucence : Translucence or None
     """
-    source = reflectance * direct
+
+    def sent(incident: Floats) -> Floats:
+        reflected = reflectance * incident
+        return reflected if translucence is None else reflected + translucence.sent_on(incident)
+
+    source = sent(direct)
     weight = areas[:, None] / areas.sum()
 
     def balance(radiance: Floats) -> Floats:
-        return radiance - reflectance * exchange.apply(radiance)
+        return radiance - sent(exchange.apply(radiance))
 
     reflected, iterations, residual = gmres(balance, source, weight)
     reflected = np.maximum(reflected, 0.0)

@@ -44,6 +44,10 @@ class Surfaces:
         Means, where they vary.
     reflectance_texture, emission_texture : Texture or None
         How they vary over some of the triangles.
+    translucence : (t, 3) float or None
+        Mean share of the light on one side that leaves the other; None where there is none, and
+    translucence_texture : Texture or None
+        how it varies.
     mesh_of_triangle, input_triangle : (t,) int
         The mesh, and the triangle's number in it.
     first_point_of_mesh : (meshes + 1,) int
@@ -81,6 +85,8 @@ class Surfaces:
     emission: Floats
     reflectance_texture: Texture | None
     emission_texture: Texture | None
+    translucence: Floats | None
+    translucence_texture: Texture | None
     mesh_of_triangle: Ints
     input_triangle: Ints
     first_point_of_mesh: Ints
@@ -137,23 +143,35 @@ class Surfaces:
         """Mean emission over parts of triangles, (n, 3), as `reflectance_over`."""
         return mean_colours(self.emission, self.emission_texture, triangle, corners)
 
-    def opaque_reflectance_over(self, triangle: Ints, corners: Floats) -> Floats:
-        """Mean reflectance of what is opaque of parts of triangles, which rays meet, (n, 3), as `reflectance_over`."""
-        reflectance = self.reflectance_over(triangle, corners)
+    def translucence_over(self, triangle: Ints, corners: Floats) -> Floats:
+        """Mean translucence over parts of triangles, (n, 3), as `reflectance_over`."""
+        if self.translucence is None:
+            return np.zeros((len(triangle), 3))
+        return mean_colours(self.translucence, self.translucence_texture, triangle, corners)
+
+    def of_opaque_parts(self, colours: Floats, triangle: Ints, corners: Floats) -> Floats:
+        """Means over parts of triangles, 0 to 1, as those of what is opaque of them, which rays meet, (n, 3)."""
         if self.transmittance is None:
-            return reflectance
-        return np.minimum(of_opaque(reflectance, self.transmittance.opacity_over(triangle, corners)), 1.0)
+            return colours
+        return np.minimum(of_opaque(colours, self.transmittance.opacity_over(triangle, corners)), 1.0)
 
     def vary(self, triangle: Ints) -> NDArray[np.bool_]:
         """Whether the reflectance that rays meet on triangles (n,) is not that of the whole triangle, (n,)."""
-        some = self.is_partly_clear()
+        some = self.let_pass()
         if self.reflectance_texture is not None:
             some[self.reflectance_texture.triangle] = True
         return some[triangle]
 
-    def is_partly_clear(self) -> NDArray[np.bool_]:
-        """Triangles that let a part of the light through, (t,)."""
-        return np.zeros(len(self.triangles), bool) if self.transmittance is None else self.transmittance.some.copy()
+    def let_pass(self) -> NDArray[np.bool_]:
+        """Triangles that let a part of the light through, straight or not, (t,)."""
+        clear = self.transmittance is not None and self.transmittance.some
+        return clear | self.translucent()
+
+    def translucent(self) -> NDArray[np.bool_]:
+        """Triangles of which one side sends on light of the other, (t,)."""
+        if self.translucence is None:
+            return np.zeros(len(self.triangles), dtype=bool)
+        return self.translucence.any(axis=1)
 
     def recoloured(self, scene: Scene) -> Surfaces:
         """The same triangles, with the colours that they have in `scene`, whose meshes have the same shapes."""
@@ -236,6 +254,7 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
     emission = of_triangles([mesh.emission for mesh in scene.meshes])
     pale = joined([(mesh.reflectance_texture, k) for mesh, k in zip(scene.meshes, kept, strict=True)])
     bright = joined([(mesh.emission_texture, k) for mesh, k in zip(scene.meshes, kept, strict=True)])
+    translucence, silky = _translucence(scene, kept)
     if pale is not None:
         pale = replace(pale, colours=np.clip(np.nan_to_num(pale.colours, posinf=1.0), 0.0, 1.0))
     if bright is not None:
@@ -245,6 +264,8 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
         "emission": with_means(sound_light(emission), bright),
         "reflectance_texture": pale,
         "emission_texture": bright,
+        "translucence": translucence,
+        "translucence_texture": silky,
         "world": sound_light(scene.world),
         "lamps": tuple(sound_lamp(lamp) for lamp in scene.lamps),
         "colour_warnings": (
@@ -252,6 +273,19 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
             *_light_warnings(scene),
         ),
     }
+
+
+def _translucence(scene: Scene, kept: list[Ints]) -> tuple[Floats | None, Texture | None]:
+    """Of all triangles, None where none is translucent, and how it varies."""
+    pairs = list(zip(scene.meshes, kept, strict=True))
+    texture = joined([(mesh.translucence_texture, k) for mesh, k in pairs])
+    if texture is None and all(mesh.translucence is None for mesh, _ in pairs):
+        return None, None
+    if texture is not None:
+        texture = replace(texture, colours=np.clip(np.nan_to_num(texture.colours, posinf=1.0), 0.0, 1.0))
+    shares = [np.zeros((len(k), 3)) if m.translucence is None else m.translucence[k] for m, k in pairs]
+    means = with_means(np.clip(np.nan_to_num(np.concatenate(shares), posinf=1.0), 0.0, 1.0), texture)
+    return (means, texture) if means.any() else (None, None)
 
 
 def _light_warnings(scene: Scene) -> list[str]:

@@ -134,6 +134,9 @@ class Transport:
         met = np.zeros(2 * len(self.tree) + 2, dtype=bool)
         for table in self.tables:
             met[table.hits.ravel()] = True  # the two special hits mark the last two places
+        sides = met[:-2].reshape(-1, 2)
+        # What is seen of one side of these is light of the other.
+        sides |= (sides.any(axis=1) & self.surfaces.translucent()[self.tree.triangle])[:, None]
         return np.flatnonzero(met[:-2] & ~self.has_row())
 
     def trace(self, elements: Ints, report: Callable[[float], None] = lambda share: None) -> None:

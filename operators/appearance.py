@@ -38,8 +38,8 @@ class Appearance:
     ----------
     reflectance, emission : (t, 3) float
     reflectance_texture, emission_texture : Texture or None
-    transmittance : (t, 3) float or None
-    transmittance_texture : Texture or None
+    translucence, transmittance : (t, 3) float or None
+    translucence_texture, transmittance_texture : Texture or None
     refraction : (t,) float or None
     clear, front_only : (t,) bool or None
     bare : bool
@@ -50,6 +50,8 @@ class Appearance:
     emission: Floats
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
+    translucence: Floats | None = None
+    translucence_texture: Texture | None = None
     transmittance: Floats | None = None
     transmittance_texture: Texture | None = None
     refraction: Floats | None = None
@@ -224,11 +226,12 @@ def appearance_of(
     refraction = np.array([surface.refraction for surface in surfaces])
     if (refraction > 1.0).any():
         colours["refraction"] = refraction[slot_of_triangle]
-    for name, source in (("reflectance", "reflectance"), ("emission", "emission"), ("transmittance", "through")):
-        values = [getattr(surface, source) for surface in surfaces]
+    for name in ("reflectance", "emission", "translucence", "transmittance"):
+        values = [getattr(surface, "through" if name == "transmittance" else name) for surface in surfaces]
         constants = np.array([np.zeros(3) if varies(value) else value for value in values])
-        known = None if evaluation is None else getattr(evaluation, name)
-        if name != "transmittance" or constants.any() or varies(*values) or known is not None:
+        # That of evaluated shaders counts as diffuse reflectance.
+        known = getattr(evaluation, name, None)
+        if name in ("reflectance", "emission") or constants.any() or varies(*values) or known is not None:
             colours[name] = constants[slot_of_triangle]
         parts = []
         if known is not None:

@@ -504,6 +504,8 @@ class _Reader:
                 reflectance_texture=appearance.reflectance_texture,
                 emission_texture=appearance.emission_texture,
                 clear=appearance.clear,
+                translucence=appearance.translucence,
+                translucence_texture=appearance.translucence_texture,
                 transmittance=appearance.transmittance,
                 transmittance_texture=appearance.transmittance_texture,
                 refraction=appearance.refraction,

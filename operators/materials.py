@@ -8,6 +8,7 @@ node is named, for Blender to evaluate it.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -35,7 +36,6 @@ NOT_DIFFUSE = {
     "BSDF_GLASS",
     "BSDF_REFRACTION",
     "BSDF_TRANSPARENT",
-    "BSDF_TRANSLUCENT",
     "BSDF_HAIR",
     "BSDF_HAIR_PRINCIPLED",
     "HOLDOUT",
@@ -64,6 +64,8 @@ class Surface:
         Whether all of it goes through, as if the material were not there.
     front_only : bool
         Whether it emits from its front alone.
+    translucence : (3,) float or Varying, 0..1
+        Share of the light on one side that leaves the other evenly in all directions, linear RGB.
     unread : tuple of str
         Nodes that only Blender can evaluate, in the words of its Add menu: where there is one, the colours are guesses.
     """
@@ -76,16 +78,20 @@ class Surface:
     refraction: float = 1.0
     clear: bool = False
     front_only: bool = False
+    translucence: Colour | Varying = field(default_factory=lambda: np.zeros(3))
 
     @property
     def is_bare(self) -> bool:
         """Whether it has no light of its own to show: it is clear, or glass and nothing else."""
-        glass = self.refraction > 1.0 and not self.unread and not varies(self.reflectance, self.emission)
-        return self.clear or bool(glass and not np.any(self.reflectance) and not np.any(self.emission))
+        glass = (
+            self.refraction > 1.0 and not self.unread and not varies(self.reflectance, self.emission, self.translucence)
+        )
+        own = glass and (self.reflectance, self.emission, self.translucence)
+        return self.clear or bool(glass and not np.any(own))
 
     def colours(self) -> tuple[Colour | Varying, ...]:
-        """Return all three."""
-        return self.reflectance, self.emission, self.through
+        """Return all that may vary."""
+        return self.reflectance, self.emission, self.through, self.translucence
 
 
 def _surface(
@@ -95,6 +101,7 @@ def _surface(
     unread: Iterable[str] = (),
     through: object = 0.0,
     refraction: float = 1.0,
+    translucence: object = 0.0,
 ) -> Surface:
     def colour(value: object) -> Colour | Varying:
         if isinstance(value, Varying):
@@ -110,6 +117,7 @@ def _surface(
         colour(0.0 if clear else through),
         refraction,
         clear,
+        translucence=colour(translucence),
     )
 
 
@@ -176,6 +184,15 @@ def constant_emission(owner: bpy.types.World | bpy.types.Light) -> tuple[Colour,
     return shader.emission, shader.notes
 
 
+class _Shares(NamedTuple):
+    """What happens to the light that meets a shader, as of `Surface`, and what it emits."""
+
+    reflectance: Value = np.zeros(3)
+    emission: Value = np.zeros(3)
+    through: Value = np.zeros(3)
+    translucence: Value = np.zeros(3)
+
+
 class _ShaderReader:
     """Follows the links of one node tree, in and out of groups, from its output to constants and textures.
 
@@ -205,7 +222,7 @@ class _ShaderReader:
         output = self.tree.get_output_node("CYCLES")
         if output is None:
             return _surface()
-        reflectance, emission, through = self._shader(_input(output, "Surface"), ())
+        reflectance, emission, through, translucence = self._shader(_input(output, "Surface"), ())
         if not varies(through):
             through = np.clip(through, 0.0, 1.0)
             if np.ptp(through) > _TINTED:
@@ -214,41 +231,39 @@ class _ShaderReader:
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
         notes, unread = dict.fromkeys(self.notes), dict.fromkeys(self.unread)
-        return _surface(reflectance, emission, notes, unread, through, self.refraction)
+        return _surface(reflectance, emission, notes, unread, through, self.refraction, translucence)
 
-    def _shader(self, socket, groups) -> tuple[Value, Value, Value]:
-        """Return reflectance, emission and what is let through by whatever is linked to a shader socket.
-
-        An open one is black.
-        """
-        nothing = np.zeros(3), np.zeros(3), np.zeros(3)
+    def _shader(self, socket, groups) -> "_Shares":
+        """Return what happens to light at whatever is linked to a shader socket; an open one is black."""
         output, groups = self._source(socket, groups)
         if output is None:
-            return nothing
+            return _Shares()
         node = output.node
         if node.type == "BSDF_PRINCIPLED":
             return self._principled(node, groups)
         if node.type in {"EMISSION", "BACKGROUND"}:
             colour, strength = self._colour(node, "Color", groups), self._value(node, "Strength", groups)
-            return np.zeros(3), combined(np.multiply, colour, strength), np.zeros(3)
+            return _Shares(emission=combined(np.multiply, colour, strength))
         if node.type == "BSDF_DIFFUSE":
-            return self._colour(node, "Color", groups), np.zeros(3), np.zeros(3)
+            return _Shares(self._colour(node, "Color", groups))
+        if node.type == "BSDF_TRANSLUCENT":
+            return _Shares(translucence=self._colour(node, "Color", groups))
         if node.type == "BSDF_TRANSPARENT":
-            return np.zeros(3), np.zeros(3), self._colour(node, "Color", groups)
+            return _Shares(through=self._colour(node, "Color", groups))
         if node.type in {"BSDF_GLASS", "BSDF_REFRACTION"}:
             if node.type == "BSDF_GLASS":
                 self._refract(node, groups)
-            return np.zeros(3), np.zeros(3), self._colour(node, "Color", groups)
+            return _Shares(through=self._colour(node, "Color", groups))
         if node.type == "MIX_SHADER":
             share = self._share(node, "Fac", groups)
             first, second = self._shader(node.inputs[1], groups), self._shader(node.inputs[2], groups)
-            return tuple(_mix(share, a, b) for a, b in zip(first, second, strict=True))
+            return _Shares(*(_mix(share, a, b) for a, b in zip(first, second, strict=True)))
         if node.type == "ADD_SHADER":
             first, second = self._shader(node.inputs[0], groups), self._shader(node.inputs[1], groups)
-            return tuple(combined(np.add, a, b) for a, b in zip(first, second, strict=True))
+            return _Shares(*(combined(np.add, a, b) for a, b in zip(first, second, strict=True)))
         return self._unsupported(node, groups)
 
-    def _principled(self, node, groups) -> tuple[Value, Value, Value]:
+    def _principled(self, node, groups) -> "_Shares":
         opaque = self._share(node, "Alpha", groups)
         metal, glass = (self._share(node, name, groups) for name in ("Metallic", "Transmission Weight"))
         if varies(metal) or metal > 0.0:
@@ -266,22 +281,22 @@ class _ShaderReader:
         emission = np.zeros(3)
         if varies(strength) or strength != 0.0:
             emission = combined(np.multiply, self._colour(node, "Emission Color", groups), strength)
-        return reflectance, emission, through
+        return _Shares(reflectance, emission, through)
 
     def _refract(self, node, groups) -> None:
         index = self._value(node, "IOR", groups)
         self.refraction = max(self.refraction, 1.0 if varies(index) else float(index))
 
-    def _unsupported(self, node, groups) -> tuple[Value, Value, Value]:
+    def _unsupported(self, node, groups) -> "_Shares":
         name = _title(node)
         if node.type in _DIFFUSE_LIKE:
             self.notes.append(f"{name} {_DIFFUSE_LIKE[node.type]}; it counts as diffuse")
-            return self._colour(node, "Color", groups), np.zeros(3), np.zeros(3)
+            return _Shares(self._colour(node, "Color", groups))
         if node.type in NOT_DIFFUSE:
             self.notes.append(f"{name} reflects no diffuse light; that part counts as black")
-            return np.zeros(3), np.zeros(3), np.zeros(3)
+            return _Shares()
         self._leave(name, f"{name} is not supported; that part counts as grey")
-        return np.full(3, GREY), np.zeros(3), np.zeros(3)
+        return _Shares(np.full(3, GREY))
 
     def _leave(self, name: str, note: str) -> None:
         """Leave a node to Blender, or say what is made of it."""

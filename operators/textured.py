@@ -227,6 +227,9 @@ class _Nodes:
             return self._look_inside(node, output)
         if node.type == "GROUP_INPUT":
             raise UnsupportedShaderError
+        if node.type == "BSDF_TRANSLUCENT":
+            # It shows light of both sides.
+            raise UnsupportedShaderError
         return _Look() if node.type in NOT_DIFFUSE else _Look(_GREY)
 
     def _look_inside(self, node: bpy.types.Node, output: bpy.types.NodeSocket) -> _Look:

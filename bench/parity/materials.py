@@ -230,6 +230,36 @@ def skylight() -> list[Any]:
     return [floor]
 
 
+def paper() -> Any:
+    """Return a material that reflects some of the light and sends some on to its other side."""
+    made = bpy.data.materials.new("Paper")
+    tree = stage.node_tree(made)
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    mix.inputs[0].default_value = 0.6
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=PALE).outputs[0], mix.inputs[1])
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfTranslucent", Color=(0.9, 0.6, 0.3)).outputs[0], mix.inputs[2])
+    stage.show(tree, mix)
+    return made
+
+
+@case("A translucent shade around a lamp", samples=8192)
+def translucent_shade() -> list[Any]:
+    """All of the floor's light has come through paper, or was reflected where it went past it."""
+    floor = stage.room()
+    stage.box("Shade", (-0.35, -0.35, 0.9), (0.35, 0.35, 1.5), paper())
+    stage.lamp("POINT", (0.05, -0.05, 1.2), shadow_soft_size=0.05, energy=30.0)
+    return [floor]
+
+
+@case("Translucent paper, lit from behind", quantity="Radiosity")
+def translucent_paper() -> list[Any]:
+    """What leaves the side that no lamp sees."""
+    stage.room()
+    hung = stage.grid("Paper", 1.5, 1.5, 6, paper(), location=(0.2, 0.0, 0.9), rotation=(0.0, 1.2, 0.0))
+    stage.lamp("AREA", (-0.6, -0.2, 1.6), shape="DISK", size=0.5)
+    return [hung]
+
+
 @case("Emission from one side, by a Backfacing node")
 def one_sided_emission() -> list[Any]:
     """A sheet that shines down and is dark above, between the floor and a wall."""

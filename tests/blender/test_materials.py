@@ -161,6 +161,12 @@ def test_the_part_of_a_principled_shader_that_is_metal_is_named():
     assert "Metallic reflects no diffuse light" in note
 
 
+def test_a_translucent_shader_sends_light_to_the_other_side():
+    surface = material_surface(node_material("Paper", "ShaderNodeBsdfTranslucent", Color=(0.8, 0.6, 0.4, 1.0)))
+    assert surface.translucence == pytest.approx([0.8, 0.6, 0.4]) and surface.notes == ()
+    assert not surface.reflectance.any() and not surface.through.any() and not surface.is_bare
+
+
 def test_glass_lets_light_through_and_refracts_it():
     glass = material_surface(node_material("Pane", "ShaderNodeBsdfGlass", Color=(0.8, 0.8, 0.8, 1.0), IOR=1.5))
     assert glass.through == pytest.approx(np.full(3, 0.8)) and glass.refraction == pytest.approx(1.5)
