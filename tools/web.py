@@ -98,6 +98,8 @@ def fetch_viewer(folder: Path) -> None:
 
 def export(blend: Path, path: Path) -> None:
     """Write what is visible in a .blend as a .glb."""
+    if not blend.is_file():
+        raise WebError(f"there is no file {blend}")
     import bpy
 
     bpy.ops.wm.open_mainfile(filepath=str(blend))
