@@ -197,8 +197,12 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     escape[number[shares.receiver[lost]]] = shares.share[lost]
     buried = transport.buried_share()[base]
     share = np.ones(len(elements))
-    share[number[twins]] = cover.covered.mean(axis=1)
-    share[number[cover.element]] -= cover.covered.mean(axis=1)
+    # By area as by rays: what is counted as sent out by the one part must not be received by the other.
+    rays = np.zeros(len(elements))
+    rays[number[shares.receiver]] = shares.rays
+    below, beside = rays[number[twins]], rays[number[cover.element]]
+    share[number[twins]] = below / np.maximum(below + beside, 1.0)
+    share[number[cover.element]] -= share[number[twins]]
     means = TriangleMeans.over(tree, base >> 1)
     return Balance(
         elements,
@@ -283,9 +287,14 @@ def direct_on_patches(
         direct.append(at_points.weighted(1.0 / points).renumbered(np.repeat(rows, points), count))
     if len(cover.element):
         at_points = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
-        for covered, chosen in ((cover.element, ~cover.covered), (cover.twin[cover.element], cover.covered)):
+        twins = cover.twin[cover.element]
+        areas = balance.areas[number[cover.element]] + balance.areas[number[twins]]
+        for covered, chosen in ((cover.element, ~cover.covered), (twins, cover.covered)):
             receiver = np.where(chosen, number[covered][:, None], -1)
-            share = chosen / chosen.sum(axis=1)[:, None]
+            # What the points get in all is spread over the area that rays stand for, unless few of them say so.
+            part = balance.areas[number[covered]] / np.maximum(areas, np.finfo(np.float64).tiny)
+            part = np.maximum(part, 0.5 * chosen.mean(axis=1))
+            share = chosen / (chosen.shape[1] * part[:, None])
             direct.append(at_points.weighted(share.ravel()).renumbered(receiver.ravel(), count))
     return DirectLight.joined(direct)
 
