@@ -84,10 +84,6 @@ LARGEST_PATCH = 1.0 / 16.0
 """Share of the area that the sizes are made for, which a patch counts for at most. Where no ground is wide none is
 larger."""
 
-LEAST_CROSSED = 1.0 / 8.0
-"""Of triangles smaller than patches, those that are smaller than so much of their size stay whole where a sheet passes
-through them."""
-
 FINER_CUTS = 4.0
 """Times smaller still where the outline of another object crosses them."""
 
@@ -332,7 +328,7 @@ def subdivided(
         clock.start("Coarse patches", 0.02, 0.03)
         smallest, _ = minimum_sizes(surfaces, settings, effort, area)
         least = min(smallest, automatic_size(area, effort))
-        lines = find_crossings(surfaces, lit, (least * LEAST_CROSSED) ** 2)
+        lines = find_crossings(surfaces, rays, lit, least)
         tree = clustered_patches(surfaces, least, lines)
         per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
         transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)

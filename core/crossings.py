@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where sheets pass through triangles, or stand on them: lines on which what a triangle sees and gets breaks off.
+"""Where walls pass through triangles, or stand on them: lines on which what a triangle sees and gets breaks off.
 
 A wall of single faces that goes on below the floor is lit by the room above it and by the sky below. Both sides of
 the floor are lit, so it hides nothing by itself; but no light goes from one part of the wall to the other.
@@ -13,12 +13,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from .geometry import cross, largest_edges, lengths, order_along_curve
+from .geometry import cross, largest_edges, lengths, order_along_curve, side_normals
 from .scene import Floats, Ints
 from .surfaces import Surfaces
+from .visibility import RayScene
 
 CRACK, CRACK_OF_TRIANGLE = 1e-3, 0.05
-"""A sheet that ends closer to a triangle than this share of its piece's size, and of its own longest edge, stands on
+"""A wall that ends closer to a triangle than this share of its piece's size, and of its own longest edge, stands on
 it: less light passes below than is worth telling."""
 
 LEAST_SINE = 0.05
@@ -27,6 +28,23 @@ everywhere."""
 
 SAME_LINE = 1e-4
 """Share of a triangle's size within which two lines on it are one."""
+
+LEAST_CROSSED = 1.0 / 8.0
+"""Of triangles smaller than patches, those that are smaller than so much of their size stay whole."""
+
+LEAST_LINE = 0.5
+"""Share of a triangle's size, or the size of a patch, that a line is long at least: around the leg of a table rays tell
+what it covers."""
+
+LARGEST_THICKNESS = 2.0
+"""In sizes of the smallest patch: through what is thicker no patch near it reaches. Where it covers a part of one, rays
+tell."""
+
+LEAST_SLENDERNESS = 4.0
+"""Times its thickness that a solid is long at least where it counts as a wall: blocks and legs are not."""
+
+HEIGHT = 0.05
+"""In sizes of the smallest patch: how high above a surface a ray tells how thick is what stands there."""
 
 QUERIES_AT_ONCE = 2**16
 """Triangles that are looked up in the boxes at once."""
@@ -45,7 +63,7 @@ class Crossings:
         The line is where `across` times the way from the triangle's first corner is this.
     along : (k, 3) float, unit
     low, high : (k,) float, scene units
-        Where the line begins and ends, as `along` times that way.
+        Where the line begins and ends, there or beyond, as `along` times that way.
     """
 
     triangle: Ints
@@ -66,29 +84,73 @@ class Crossings:
         return Crossings(np.zeros(0, dtype=np.int64), vectors, nothing, vectors, nothing, nothing)
 
 
-def find_crossings(surfaces: Surfaces, lit: NDArray[np.bool_], least_area: float) -> Crossings:
-    """Find the lines on all triangles of at least an area along which sheets cross them.
+def find_crossings(surfaces: Surfaces, rays: RayScene, lit: NDArray[np.bool_], smallest: float) -> Crossings:
+    """Find the lines along which sheets and thin walls cross triangles.
 
     Parameters
     ----------
     lit : (shells, 2) bool
-        Front and back: a sheet is what light reaches from both sides. What solids cover is told by the rays.
-    least_area : float, scene units squared
+        Front and back: whether light reaches them.
+    smallest : float, scene units
+        The minimum size n of patches. What is far smaller is neither cut nor cuts anything.
     """
     shell = surfaces.shell_of_triangle
-    sheets = np.flatnonzero(lit.all(axis=1)[shell] & surfaces.seen)
-    asked = np.flatnonzero(lit.any(axis=1)[shell] & (surfaces.areas >= least_area))
-    if len(sheets) == 0:
+    large = surfaces.areas >= (LEAST_CROSSED * smallest) ** 2
+    cutters = np.flatnonzero((lit.all(axis=1)[shell] | large) & lit.any(axis=1)[shell] & surfaces.seen)
+    asked = np.flatnonzero(lit.any(axis=1)[shell] & large)
+    if len(cutters) == 0:
         return Crossings.none()
     crack = _cracks(surfaces)
-    boxes = _Boxes(surfaces.points[surfaces.triangles[sheets]], crack[sheets])
-    parts = [Crossings.none()]
+    boxes = _Boxes(surfaces.points[surfaces.triangles[cutters]], crack[cutters])
+    parts, thick = [Crossings.none()], [np.zeros(0)]
     for first in range(0, len(asked), QUERIES_AT_ONCE):
         some = asked[first : first + QUERIES_AT_ONCE]
         row, item = boxes.near(surfaces.points[surfaces.triangles[some]], surfaces.normals[some])
-        parts.append(_lines(surfaces, some[row], sheets[item], crack))
+        lines, cutter = _lines(surfaces, some[row], cutters[item], crack)
+        parts.append(lines)
+        thick.append(_thickness(surfaces, rays, lit, lines, cutter, HEIGHT * smallest))
     found = Crossings(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(Crossings)))
-    return _merged(found, largest_edges(surfaces.points, surfaces.triangles[found.triangle]))
+    lines, thickness = _merged(found, np.concatenate(thick), surfaces)
+    size = largest_edges(surfaces.points, surfaces.triangles[lines.triangle])
+    shortest = np.maximum(np.minimum(smallest, LEAST_LINE * size), LEAST_SLENDERNESS * thickness)
+    return lines.taken((thickness < LARGEST_THICKNESS * smallest) & (lines.high - lines.low > shortest))
+
+
+def _thickness(
+    surfaces: Surfaces, rays: RayScene, lit: NDArray[np.bool_], lines: Crossings, cutter: Ints, height: float
+) -> Floats:
+    """How thick what stands at lines is, (k,), scene units: 0 for what divides two spaces.
+
+    So does what has light on both sides. Where one side is dark, a ray along the surface tells what is there: nothing,
+    or another space, as behind a sheet, or the far side of a solid.
+
+    Parameters
+    ----------
+    cutter : (k,) int
+        Triangles that the lines are of.
+    height : float, scene units
+        Of the ray over the surface.
+    """
+    shell = surfaces.shell_of_triangle
+    asked = np.flatnonzero(~lit.all(axis=1)[shell[cutter]])
+    thickness = np.zeros(len(cutter))
+    lines, cutter = lines.taken(asked), cutter[asked]
+    corners = surfaces.points[surfaces.triangles[lines.triangle]]
+    normal, origin = surfaces.normals[lines.triangle], corners[:, 0]
+    # The middle of the line on the triangle, raised to where the cutter is, if light comes there.
+    own = np.einsum("kx,kjx->kj", lines.along, corners - origin[:, None])
+    middle = np.maximum(lines.low, own.min(axis=1)) + np.minimum(lines.high, own.max(axis=1))
+    place = origin + lines.across * lines.offset[:, None] + lines.along * middle[:, None] / 2.0
+    above = surfaces.points[surfaces.triangles[cutter]].mean(axis=1) - place
+    back = np.einsum("kx,kx->k", above, normal) < 0.0
+    back ^= ~lit[shell[lines.triangle], back.astype(np.int64)]
+    place = place + side_normals(normal, back) * height
+    inward = side_normals(surfaces.normals[cutter], lit[shell[cutter], 0])
+    start, _ = rays.lifted(place, inward)
+    hits = rays.first_hits(start, inward.astype(np.float32))
+    solid = (hits.triangle >= 0) & ~lit[shell[hits.triangle], hits.back.astype(np.int64)]
+    thickness[asked] = np.where(solid, hits.distance, 0.0) / rays.scale
+    return thickness
 
 
 def _cracks(surfaces: Surfaces) -> Floats:
@@ -144,8 +206,8 @@ class _Boxes:
         return query, self._order[box]
 
 
-def _lines(surfaces: Surfaces, triangle: Ints, sheet: Ints, crack: Floats) -> Crossings:
-    """Lines along which triangles of sheets cross other triangles, pair by pair (p,)."""
+def _lines(surfaces: Surfaces, triangle: Ints, sheet: Ints, crack: Floats) -> tuple[Crossings, Ints]:
+    """Lines along which triangles of sheets cross other triangles, of pairs (p,), and whose lines these are."""
     places = surfaces.place_of_point[surfaces.triangles]
     # Neighbours meet in their common edge.
     apart = ~(places[triangle][:, :, None] == places[sheet][:, None, :]).any(axis=(1, 2))
@@ -162,11 +224,11 @@ def _lines(surfaces: Surfaces, triangle: Ints, sheet: Ints, crack: Floats) -> Cr
     offset = np.einsum("px,px->p", other, others[:, 0]) / np.einsum("px,px->p", other, across)
     low, high = _reach(np.einsum("px,pkx->pk", normal, others), np.einsum("px,pkx->pk", along, others), crack[sheet])
     own = np.einsum("px,pkx->pk", along, corners)
-    low, high = np.maximum(low, own.min(axis=1)), np.minimum(high, own.max(axis=1))
     beside = np.einsum("px,pkx->pk", across, corners) - offset[:, None]
     slack = crack[triangle]
-    met = (high - low > slack) & (beside.min(axis=1) < slack) & (beside.max(axis=1) > -slack)
-    return Crossings(triangle, across, offset, along, low, high).taken(met)
+    common = np.minimum(high, own.max(axis=1)) - np.maximum(low, own.min(axis=1))
+    met = (common > slack) & (beside.min(axis=1) < slack) & (beside.max(axis=1) > -slack)
+    return Crossings(triangle, across, offset, along, low, high).taken(met), sheet[met]
 
 
 def _reach(height: Floats, along: Floats, crack: Floats) -> tuple[Floats, Floats]:
@@ -195,16 +257,17 @@ def _reach(height: Floats, along: Floats, crack: Floats) -> tuple[Floats, Floats
     return low, high
 
 
-def _merged(lines: Crossings, size: Floats) -> Crossings:
+def _merged(lines: Crossings, thickness: Floats, surfaces: Surfaces) -> tuple[Crossings, Floats]:
     """Join lines that continue each other: a wall of many triangles crosses a floor along one line.
 
     Parameters
     ----------
-    size : (k,) float, scene units
-        Of the triangles.
+    thickness : (k,) float, scene units
+        Of what crosses there. The thinnest counts: where it runs through other solids, rays find these.
     """
     if len(lines.triangle) == 0:
-        return lines
+        return lines, thickness
+    size = largest_edges(surfaces.points, surfaces.triangles[lines.triangle])
     # One direction and its opposite are the same line.
     largest = np.take_along_axis(lines.along, np.abs(lines.along).argmax(axis=1)[:, None], axis=1)
     turn = np.where(largest < 0.0, -1.0, 1.0)
@@ -214,7 +277,7 @@ def _merged(lines: Crossings, size: Floats) -> Crossings:
     _, parallel = np.unique(key, axis=0, return_inverse=True)
     parallel = parallel.ravel()
     order = np.lexsort([lines.offset, parallel])
-    lines, parallel, size = lines.taken(order), parallel[order], size[order]
+    lines, parallel, size, thickness = lines.taken(order), parallel[order], size[order], thickness[order]
     other = np.ones(len(order), dtype=bool)
     other[1:] = (np.diff(parallel) != 0) | (np.diff(lines.offset) > SAME_LINE * size[1:])
     group = np.cumsum(other)
@@ -227,11 +290,6 @@ def _merged(lines: Crossings, size: Floats) -> Crossings:
     new[1:] = (group[1:] != group[:-1]) | (low[1:] > farthest[:-1] + SAME_LINE * size[order[1:]])
     begin = np.flatnonzero(new)
     merged = lines.taken(order[begin])
-    return Crossings(
-        merged.triangle,
-        merged.across,
-        merged.offset,
-        merged.along,
-        low[begin],
-        np.maximum.reduceat(high, begin),
-    )
+    farthest = np.maximum.reduceat(high, begin)
+    joined = Crossings(merged.triangle, merged.across, merged.offset, merged.along, low[begin], farthest)
+    return joined, np.minimum.reduceat(thickness[order], begin)

@@ -223,7 +223,7 @@ def _on_leaves(tree: PatchTree, lines: Crossings, line: Ints, leaf: Ints) -> _On
     # A line that runs along an edge and ends there cuts it there.
     on_edge = (beside == 0.0) & (other == 0.0)
     for bound in (of.low, of.high):
-        ends = (bound[:, None] - start) / np.where(on_edge, end - start, 1.0)
+        ends = (bound[:, None] - start) / np.where(on_edge & (end != start), end - start, 1.0)
         inside = on_edge & (ends > LEAST_END) & (ends < 1.0 - LEAST_END)
         share, passes = np.where(inside, ends, share), passes | inside
     middle = (start + end) / 2.0

@@ -45,6 +45,23 @@ def test_a_wall_between_a_bright_room_and_a_dark_one_lets_nothing_through(scale,
 
 
 @GAPS
+@pytest.mark.parametrize("thickness", [0.0, 0.002, 0.06])
+@pytest.mark.parametrize("place", [1.17])
+def test_nothing_gets_through_a_wall_that_stands_where_no_edge_of_the_room_is(place, thickness, gap):
+    lamp = exact.rectangle("lamp", (0.15, 0.3, 0.9), (0, 0.4, 0), (0.3, 0, 0), emission=5.0)
+    high = 1.0 - gap
+    if thickness == 0.0:
+        wall = exact.rectangle("wall", (place, gap, gap), (0, high - gap, 0), (0, 0, high - gap), reflectance=0.8)
+    else:
+        wall = block("wall", (place, gap, gap), (place + thickness, high, high), reflectance=0.8)
+    # Walls of two triangles reach through to the other side, unless they are cut.
+    result = bake(Scene((*exact.box_walls((2, 1, 1), reflectance=0.8), lamp, wall), DARK), DRAFT)
+    bright = mean_light(result, lambda at, normal: at[:, 0] < place - 1e-3)
+    dark = mean_light(result, lambda at, normal: at[:, 0] > place + thickness + 1e-3)
+    assert dark < 1e-3 * bright
+
+
+@GAPS
 @pytest.mark.parametrize("lean", [0.0, 0.3], ids=["straight", "slanted"])
 def test_the_dark_side_of_a_wall_without_thickness_asks_for_no_faces(gap, lean):
     lamp = exact.rectangle("lamp", (0.3, 0.3, 0.9), (0, 0.4, 0), (0.4, 0, 0), emission=5.0)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sheets that pass through others: the lines where they do, and what is cut along these."""
 
+from contextlib import closing
+
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
@@ -11,8 +13,9 @@ from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.subdivision import conforming_faces
 from radiosity_bake.core.surfaces import join
+from radiosity_bake.core.visibility import RayScene
 
-from tests.core.building import DARK, areas, grid, node_triangles
+from tests.core.building import DARK, areas, block, grid, node_triangles
 from tests.scenes import exact
 
 SIZE = 0.2
@@ -30,7 +33,8 @@ def cut_patches(*meshes, two_sided=True):
     surfaces = join(Scene(meshes, DARK))
     lit = np.ones((len(surfaces.closed), 2), dtype=bool)
     lit[:, 1] = two_sided
-    return coarse_patches(surfaces, SIZE, find_crossings(surfaces, lit, 0.0)), surfaces
+    with closing(RayScene(surfaces.points, surfaces.triangles, 1)) as rays:
+        return coarse_patches(surfaces, SIZE, find_crossings(surfaces, rays, lit, SIZE)), surfaces
 
 
 def floor_pieces(tree, surfaces):
@@ -52,10 +56,21 @@ def test_no_patch_of_a_floor_lies_on_both_sides_of_a_wall(low, across):
     assert areas(pieces).sum() == pytest.approx(1.0)
 
 
-def test_a_wall_lit_from_one_side_alone_and_a_floor_it_does_not_reach_cut_nothing():
-    through = wall((0.3, -1.0), (0.3, 2.0))
-    assert len(floor_pieces(*cut_patches(FLOOR, through, two_sided=False))) == 2
+def test_a_wall_that_ends_above_a_floor_does_not_cut_it():
     assert len(floor_pieces(*cut_patches(FLOOR, wall((0.3, -1.0), (0.3, 2.0), low=0.1)))) == 2
+
+
+def test_a_wall_that_is_dark_behind_cuts_a_floor_that_goes_on_there():
+    assert len(floor_pieces(*cut_patches(FLOOR, wall((0.3, -1.0), (0.3, 2.0)), two_sided=False))) > 2
+
+
+def test_thin_solids_cut_a_floor_and_thick_ones_do_not():
+    def pieces(thickness):
+        solid = block("solid", (0.3, -1.0, 0.0), (0.3 + thickness, 2.0, 0.5))
+        return len(floor_pieces(*cut_patches(FLOOR, solid, two_sided=False)))
+
+    assert pieces(0.1) > 2
+    assert pieces(0.5) == 2
 
 
 def test_the_walls_of_a_room_that_meet_along_their_edges_are_not_cut():
