@@ -43,6 +43,9 @@ class Case:
         Cycles bakes on the same meshes turned over.
     settings : dict
         Of `scene.radiosity`, for both bakes of ours.
+    ours : callable or None
+        Takes the objects once Cycles has baked them, bakes them in a way of its own and returns (c, 3) the colours of
+        each; None bakes the scene as it is.
     """
 
     name: str
@@ -52,13 +55,19 @@ class Case:
     samples: int
     quantity: str
     settings: dict[str, Any]
+    ours: Callable[[list[Any]], list[Any]] | None
 
 
 _cases: dict[str, Case] = {}
 
 
 def case(
-    title: str, *, samples: int = SAMPLES, quantity: str = "Irradiance", **settings: Any
+    title: str,
+    *,
+    samples: int = SAMPLES,
+    quantity: str = "Irradiance",
+    ours: Callable[[list[Any]], list[Any]] | None = None,
+    **settings: Any,
 ) -> Callable[[Callable[[], list[Any]]], Callable[[], list[Any]]]:
     """Return a decorator that puts the function which builds a scene on the list; its name is the row's."""
 
@@ -66,7 +75,7 @@ def case(
         topic = build.__module__.rpartition(".")[2]
         if build.__name__ in _cases:
             raise ValueError(f"There are two cases {build.__name__}")
-        _cases[build.__name__] = Case(build.__name__, topic, title, build, samples, quantity, settings)
+        _cases[build.__name__] = Case(build.__name__, topic, title, build, samples, quantity, settings, ours)
         return build
 
     return listed

@@ -130,12 +130,84 @@ def principled_picture() -> list[Any]:
     return painted_wall(image_texture, "ShaderNodeBsdfPrincipled", Specular_IOR_Level=0.0)
 
 
+@case("Principled BSDF, half of it metal or glass", quantity="Radiosity")
+def half_metal() -> list[Any]:
+    """What is left of its base colour is diffuse."""
+    made = stage.material(
+        "Half Metal",
+        "ShaderNodeBsdfPrincipled",
+        Base_Color=PALE,
+        Metallic=0.3,
+        Transmission_Weight=0.2,
+        Roughness=1.0,
+        Specular_IOR_Level=0.0,
+    )
+    floor = stage.room(made)
+    # What is glass or metal of the floor would mirror on the wall.
+    bpy.data.objects.remove(bpy.data.objects["Wall"])
+    bpy.data.objects.remove(bpy.data.objects["Board"])
+    stage.lamp("AREA", shape="SQUARE", size=0.5)
+    return [floor]
+
+
+@case("Mix and Add Shader: a wall that is diffuse and shines a little")
+def mixed_shaders() -> list[Any]:
+    """A mix of two colours, to which an emission is added."""
+    floor = stage.room()
+    made = bpy.data.materials.new("Mixed")
+    tree = stage.node_tree(made)
+    mix, add = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeAddShader")
+    mix.inputs[0].default_value = 0.3
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=(0.8, 0.1, 0.1)).outputs[0], mix.inputs[1])
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=(0.1, 0.8, 0.3)).outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], add.inputs[0])
+    tree.links.new(
+        stage.shader(tree, "ShaderNodeEmission", Color=(0.2, 0.4, 1.0), Strength=0.1).outputs[0], add.inputs[1]
+    )
+    stage.show(tree, add)
+    bpy.data.objects["Wall"].data.materials[0] = made
+    stage.lamp("AREA", shape="SQUARE", size=0.5)
+    return [floor]
+
+
+@case("Two UV maps, a picture through each")
+def two_uv_maps() -> list[Any]:
+    """One picture times another, whose UV map is turned and runs twice over the wall."""
+
+    def product(tree: Any) -> Any:
+        mix, second = tree.nodes.new("ShaderNodeMix"), tree.nodes.new("ShaderNodeUVMap")
+        mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+        second.uv_map = "Second"
+        pictures = image_texture(tree), image_texture(tree, second.outputs[0])
+        for name, value in zip(("A_Color", "B_Color"), pictures, strict=True):
+            tree.links.new(value, next(socket for socket in mix.inputs if socket.identifier == name))
+        next(socket for socket in mix.inputs if socket.identifier == "Factor_Float").default_value = 1.0
+        return next(socket for socket in mix.outputs if socket.identifier == "Result_Color")
+
+    floors = painted_wall(product)
+    mesh = bpy.data.objects["Wall"].data
+    layer = mesh.uv_layers.new(name="Second")
+    for corner, at in enumerate(mesh.uv_layers["UVMap"].uv):
+        layer.uv[corner].vector = (2.0 * at.vector.y, 2.0 * at.vector.x)
+    return floors
+
+
 @case("A transparent sheet above the floor")
 def transparent_sheet() -> list[Any]:
     """Light goes through it from the lamp and from the wall."""
     floor = stage.room()
     air = stage.material("Air", "ShaderNodeBsdfTransparent")
     stage.grid("Sheet", 2.5, 2.5, 2, air, location=(0.0, 0.0, 0.4))
+    stage.lamp("AREA", shape="DISK", size=0.5)
+    return [floor]
+
+
+@case("A sheet of red glass above the floor")
+def tinted_glass() -> list[Any]:
+    """A Transparent BSDF with a colour."""
+    floor = stage.room()
+    red = stage.material("Red Glass", "ShaderNodeBsdfTransparent", Color=(0.9, 0.5, 0.4))
+    stage.grid("Sheet", 2.5, 2.5, 2, red, location=(0.0, 0.0, 0.4))
     stage.lamp("AREA", shape="DISK", size=0.5)
     return [floor]
 

@@ -133,6 +133,19 @@ def world_environment() -> list[Any]:
     return [floor]
 
 
+@case("Photograph with other hue and saturation, and a sun lamp")
+def world_photograph_and_sun() -> list[Any]:
+    """Two suns, one of them in the picture, whose colours go through a Hue/Saturation/Value node."""
+    floor = stage.room()
+    environment(photograph(), (0.0, 0.0, 0.4))
+    tree = bpy.context.scene.world.node_tree
+    background, image = (next(n for n in tree.nodes if n.type == kind) for kind in ("BACKGROUND", "TEX_ENVIRONMENT"))
+    changed = stage.shader(tree, "ShaderNodeHueSaturation", Hue=0.6, Saturation=1.4, Value=0.5, Color=image.outputs[0])
+    tree.links.new(changed.outputs[0], background.inputs["Color"])
+    stage.lamp("SUN", turn=(0.4, 0.5, 0.0), angle=0.05)
+    return [floor]
+
+
 @case("Mirror ball")
 def world_mirror_ball() -> list[Any]:
     """The other projection of environment textures."""
