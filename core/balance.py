@@ -334,7 +334,8 @@ def _direct_on(
     for number, near in near_shares(emitters.lamps, corners, points[simple], normals[simple]).items():
         share = np.ones(len(elements))
         share[simple] = near
-        light = light.weighted_of(len(emitters.triangle) + number, np.repeat(share, count))
+        lamp = len(emitters.triangle) + number
+        light = light.weighted_of(lamp, len(emitters.strengths), np.repeat(share, count))
     return light
 
 

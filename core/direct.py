@@ -205,6 +205,28 @@ def direct_light(
     """
     if mesh is None:
         mesh = np.zeros(len(points), dtype=np.int64)
+    arguments = (points, normals, lift, keys, shadow_rays, seed, mesh)
+    scenes = rays.in_channels()
+    if len(scenes) == 1:
+        return _direct_light(emitters, rays, *arguments)
+    found = [_direct_light(emitters, scene, *arguments) for scene in scenes]
+    coloured = [light.in_channel(k, len(emitters.strengths)) for k, (light, _) in enumerate(found)]
+    doubt: Floats = sum(share * error for share, (_, error) in zip(LUMINANCE, found, strict=True))
+    return DirectLight.joined(coloured), doubt
+
+
+def _direct_light(
+    emitters: Emitters,
+    rays: RayScene,
+    points: Floats,
+    normals: Floats,
+    lift: Floats,
+    keys: Ints,
+    shadow_rays: int,
+    seed: int,
+    mesh: Ints,
+) -> tuple[DirectLight, Floats]:
+    """Direct light as `direct_light` gives it, of all channels alike."""
     by_triangles, doubt = _direct_of_linked(emitters, rays, points, normals, lift, keys, shadow_rays, seed, mesh)
     if not emitters.lamps:
         return by_triangles, doubt

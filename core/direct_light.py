@@ -21,7 +21,8 @@ class DirectLight:
     count : int
         Receivers, with or without entries.
     receiver, emitter : (p,) int32
-        There may be several entries for a pair; all of a receiver's are in the order they were added in.
+        There may be several entries for a pair; all of a receiver's are in the order they were added in. Of k emitters,
+        number e + (c + 1) k stands for what emitter e sends in channel c alone.
     weight : (p,) float
         Irradiance over pi for a radiance of 1: form factor times visible share, over the chance to be drawn.
     """
@@ -77,9 +78,14 @@ class DirectLight:
         factor = np.broadcast_to(share, self.count)[self.receiver]
         return DirectLight(self.count, self.receiver, self.emitter, self.weight * factor)
 
-    def weighted_of(self, emitter: int, share: Floats) -> DirectLight:
-        """The same entries, those of one emitter times a share of each receiver, (self.count,)."""
-        of_it = self.emitter == emitter
+    def in_channel(self, channel: int, emitters: int) -> DirectLight:
+        """The same entries, for one channel alone."""
+        number = (self.emitter + (channel + 1) * emitters).astype(np.int32)
+        return DirectLight(self.count, self.receiver, number, self.weight)
+
+    def weighted_of(self, emitter: int, emitters: int, share: Floats) -> DirectLight:
+        """The same entries, those of one of so many emitters times a share of each receiver, (self.count,)."""
+        of_it = self.emitter % emitters == emitter
         factor = np.where(of_it, share[self.receiver], 1.0)
         return DirectLight(self.count, self.receiver, self.emitter, self.weight * factor)
 
@@ -100,7 +106,12 @@ class DirectLight:
             Of the emitters.
         """
         total = np.empty((self.count, 3))
+        block, emitter = np.zeros(1, dtype=np.int32), self.emitter
+        if len(emitter) and emitter.max() >= len(radiance):
+            block, emitter = np.divmod(emitter, np.int32(len(radiance)))
         for channel in range(3):
-            light = self.weight * np.take(radiance[:, channel], self.emitter)
+            light = self.weight * np.take(radiance[:, channel], emitter)
+            if len(block) == len(emitter):
+                light *= (block == 0) | (block == channel + 1)
             total[:, channel] = np.bincount(self.receiver, weights=light, minlength=self.count)
         return total

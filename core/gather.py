@@ -18,11 +18,11 @@ from .geometry import order_along_curve
 from .met_places import MetPlaces
 from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP, ESCAPED
-from .sampling import Singles, chances, frames, hemisphere_lattice
+from .sampling import Singles, even_chances, frames, hemisphere_lattice
 from .scene import Floats, Ints
 from .surfaces import HAIR
 from .transport import Transport
-from .visibility import OFFSET, Hits
+from .visibility import OFFSET, Hits, RayScene
 from .workers import Workers
 from .world import map_cells
 
@@ -184,23 +184,29 @@ def gather(
     most_kept : int
         What rays met is kept while there are no more of them.
     """
-    total = len(receivers.points)
+    total, scenes = len(receivers.points), transport.rays.in_channels()
+    each = counts.hemisphere * len(scenes)
     if total == 0:
-        return Gathered.none(counts.hemisphere)
+        return Gathered.none(each)
     pattern = hemisphere_lattice(counts.hemisphere, transport.seed + 101)
-    kept = np.empty((total, counts.hemisphere if total * counts.hemisphere <= most_kept else 0), dtype=np.int32)
+    kept = np.empty((total, each if total * each <= most_kept else 0), dtype=np.int32)
 
-    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
-        part = slice(first, last)
-        found, below = _looked(transport, receivers, part, pattern)
+    def places_met(found: Hits, below: NDArray[np.bool_] | slice) -> NDArray[np.int32]:
         places = cells.places(found)
         if radiance.first_of_sky is not None:
             left = np.flatnonzero(places == ESCAPED)
             places[left] = radiance.first_of_sky + map_cells(found.directions[left])
         places[below] = BELOW
-        places = places.reshape(last - first, counts.hemisphere)
-        means, noise, valid = _mean_seen(radiance, places)
-        distance = found.distance.reshape(places.shape)
+        return places.reshape(-1, counts.hemisphere)
+
+    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
+        part = slice(first, last)
+        looks = [_looked(transport, receivers, part, pattern, rays) for rays in scenes]
+        places = np.concatenate([places_met(*look) for look in looks], axis=1)
+        means, noise, valid = _mean_seen(radiance, places, len(scenes))
+        # What covers a place is opaque: any channel tells.
+        found, _ = looks[0]
+        distance = found.distance.reshape(-1, counts.hemisphere)
         in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
         hidden = _covered(transport, receivers.sizes[part], finest, distance, in_plane) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
@@ -211,7 +217,7 @@ def gather(
     hidden, touching = (np.concatenate([p[k] for p in parts]) for k in (2, 3))
     direct = _direct(transport, emitters, receivers, counts, report)
     irradiance = direct.irradiance(emitters.strengths)
-    return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, MetPlaces.of(kept))
+    return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, MetPlaces.of(kept, len(scenes)))
 
 
 def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int) -> GatherRays:
@@ -239,7 +245,7 @@ def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gath
     places = gathered.places
 
     def work(first: int, last: int) -> tuple[Floats, Floats, Floats]:
-        return _mean_seen(radiance, places.between(first, last))
+        return _mean_seen(radiance, places.between(first, last), places.channels)
 
     parts = workers.map(work, len(places), places.rays)
     if not parts:
@@ -254,7 +260,7 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
 
     def work(first: int, last: int) -> NDArray[np.bool_]:
         part = slice(first, last)
-        found, _ = _looked(transport, receivers, part, pattern)
+        found, _ = _looked(transport, receivers, part, pattern, transport.rays)
         buried = (found.triangle >= 0) & transport.unlit_side[2 * found.triangle + found.back]
         distance = found.distance.reshape(last - first, rays)
         in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
@@ -266,8 +272,16 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
     return np.concatenate([np.zeros(0, dtype=bool), *parts])
 
 
-def _mean_seen(radiance: Radiance, places: NDArray[np.int32]) -> tuple[Floats, Floats, Floats]:
-    """Mean of what the rays (n, r) see, (n, 3), the standard error of its luminance and the share of valid rays."""
+def _mean_seen(radiance: Radiance, places: NDArray[np.int32], channels: int = 1) -> tuple[Floats, Floats, Floats]:
+    """Mean of what the rays (n, r) see, (n, 3), the standard error of its luminance and the share of valid rays.
+
+    With three `channels`, a third of the rays sees each.
+    """
+    if channels > 1:
+        thirds = [_mean_seen(radiance, third) for third in np.split(places, channels, axis=1)]
+        means = np.stack([light[:, k] for k, (light, _, _) in enumerate(thirds)], axis=1)
+        doubt: Floats = sum(share * noise for share, (_, noise, _) in zip(LUMINANCE, thirds, strict=True))
+        return means, doubt, np.minimum.reduce([valid for _, _, valid in thirds])
     count, rays = places.shape
     # The four numbers of a place are taken as one complex one: several times faster than as a row.
     seen = np.take(radiance.values.view(np.complex128)[:, 0], places).view(np.float32).reshape(count, rays // 2, 8)
@@ -283,7 +297,7 @@ def _mean_seen(radiance: Radiance, places: NDArray[np.int32]) -> tuple[Floats, F
 
 
 def _looked(
-    transport: Transport, receivers: Receivers, part: slice, pattern: Singles
+    transport: Transport, receivers: Receivers, part: slice, pattern: Singles, scene: RayScene
 ) -> tuple[Hits, NDArray[np.bool_] | slice]:
     """What the rays of receivers meet, (n * r,), and which of them started below their surface."""
     rays = len(pattern)
@@ -293,12 +307,8 @@ def _looked(
     directions = (pattern @ frames(normals, np.zeros(len(normals)))).reshape(-1, 3)
     lift = receivers.lift[part].astype(np.float32)
     origins = np.repeat(transport.rays.local(receivers.points[part]) + lift * np.float32(OFFSET), rays, axis=0)
-    even = (
-        np.tile(chances(0, rays).astype(np.float32), len(normals))
-        if transport.surfaces.transmittance is not None
-        else None
-    )
-    found = transport.rays.first_hits(origins, directions, even)
+    even = np.tile(even_chances(rays), len(normals)) if transport.surfaces.transmittance is not None else None
+    found = scene.first_hits(origins, directions, even)
     if not np.any(np.abs(normals - lift) > FLAT):
         return found, slice(0)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.

@@ -26,16 +26,19 @@ class MetPlaces:
         Of each receiver, counted through all tables.
     rays : int
         Of each receiver; 0 where the places of some are not kept, and there are no tables.
+    channels : int
+        1, or 3 where a third of the rays is for each.
     """
 
     tables: tuple[NDArray[np.int32], ...]
     row: Ints
     rays: int
+    channels: int = 1
 
     @staticmethod
-    def of(table: NDArray[np.int32]) -> MetPlaces:
+    def of(table: NDArray[np.int32], channels: int = 1) -> MetPlaces:
         """The places of receivers (n, rays), row by row."""
-        return MetPlaces((table,), np.arange(len(table)), table.shape[1])
+        return MetPlaces((table,), np.arange(len(table)), table.shape[1], channels)
 
     def __len__(self) -> int:
         return len(self.row)
@@ -45,11 +48,11 @@ class MetPlaces:
         rays = min(self.rays, others.rays)
         counted_on = others.row + sum(len(table) for table in self.tables)
         tables = self.tables + others.tables if rays else ()
-        return MetPlaces(tables, np.concatenate([self.row, counted_on]), rays)
+        return MetPlaces(tables, np.concatenate([self.row, counted_on]), rays, max(self.channels, others.channels))
 
     def taken(self, which: Ints) -> MetPlaces:
         """Those of some of the receivers."""
-        return MetPlaces(self.tables, self.row[which], self.rays)
+        return MetPlaces(self.tables, self.row[which], self.rays, self.channels)
 
     def with_more(self, taken: Ints, more: MetPlaces, rows: Ints) -> MetPlaces:
         """Those of `taken`, of which `rows` are replaced by `more`."""

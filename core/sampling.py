@@ -80,6 +80,14 @@ def chances(first: int, count: int) -> Floats:
     return result
 
 
+def even_chances(count: int) -> Singles:
+    """Numbers of so many rays in all, (count,), in [0, 1): those of `chances`, drawn to equal steps in their order."""
+    order = np.argsort(chances(0, count))
+    even = np.empty(count, dtype=np.float32)
+    even[order] = (np.arange(count) + 0.5) / count
+    return even
+
+
 def shifted(points: Floats, shifts: Floats) -> Floats:
     """Points (r, d) shifted for each of n receivers by (n, d), wrapped into [0, 1): (n, r, d)."""
     moved = points[None, :, :] + shifts[:, None, :]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,9 @@ TINY = np.float32(np.finfo(np.float32).tiny)
 
 MOST_REFRACTING = 10.0
 """Index of refraction above which none is taken."""
+
+TINTED = 0.01
+"""Difference between the channels of what goes through from which on they are told apart."""
 
 OPAQUE = 1e-3
 """Share of the light up to which what goes through is left out, as nothing is seen of it."""
@@ -39,11 +43,14 @@ class Transmittance:
         Of those over which it varies; its colours are (cells, 1).
     refraction : (t,) float32 or None
         Index of refraction of glass, 1 of all else; None where there is no glass.
+    channels : tuple of Transmittance
+        Of red, green and blue light, where some of it is tinted; else none.
     """
 
     means: Floats
     texture: Texture | None
     refraction: Singles | None = None
+    channels: tuple[Transmittance, ...] = ()
 
     @cached_property
     def some(self) -> NDArray[np.bool_]:
@@ -94,21 +101,34 @@ class Transmittance:
 
 def transmittance_of(meshes: tuple[SurfaceMesh, ...], kept: list[Ints]) -> Transmittance | None:
     """What goes through the triangles `kept` of meshes, in the order of both; None where nothing does."""
-    means = [
-        np.zeros((len(k), 1)) if m.transmittance is None else _share(m.transmittance[k])
-        for m, k in zip(meshes, kept, strict=True)
-    ]
+    means = _sound(
+        np.concatenate(
+            [
+                np.zeros((len(k), 3)) if m.transmittance is None else m.transmittance[k]
+                for m, k in zip(meshes, kept, strict=True)
+            ]
+        )
+    )
     texture = joined([(mesh.transmittance_texture, k) for mesh, k in zip(meshes, kept, strict=True)])
     if texture is not None:
-        texture = replace(texture, colours=_share(texture.colours).astype(np.float32))
+        texture = replace(texture, colours=_sound(texture.colours).astype(np.float32))
     index = [
         np.ones(len(k)) if m.refraction is None else np.nan_to_num(m.refraction[k], nan=1.0)
         for m, k in zip(meshes, kept, strict=True)
     ]
     refraction = np.clip(np.concatenate(index), 1.0, MOST_REFRACTING).astype(np.float32)
     glass = refraction if (refraction > 1.0).any() else None
-    found = Transmittance(with_means(np.concatenate(means), texture), texture, glass)
+    coloured: list[NDArray[Any]] = [means] if texture is None else [with_means(means, texture), texture.colours]
+    weights = [np.eye(3)[k] for k in range(3)] if any((np.ptp(c, axis=1) > TINTED).any() for c in coloured) else []
+    channels = tuple(_of_light(weight, means, texture, glass) for weight in weights)
+    found = replace(_of_light(LUMINANCE, means, texture, glass), channels=channels)
     return found if found.some.any() else None
+
+
+def _of_light(weights: Floats, means: Floats, texture: Texture | None, glass: Singles | None) -> Transmittance:
+    """What goes through of light of some colour, (3,)."""
+    own = None if texture is None else replace(texture, colours=(texture.colours @ weights).astype(np.float32)[:, None])
+    return Transmittance(with_means((means @ weights)[:, None], own), own, glass)
 
 
 def fresnel(cosine: Singles, refraction: Singles) -> Singles:
@@ -135,6 +155,6 @@ def of_opaque(colours: Floats, opacity: Floats) -> Floats:
     return result
 
 
-def _share(colours: Floats | Singles) -> Floats:
-    share: Floats = np.clip(np.nan_to_num(colours, posinf=1.0), 0.0, 1.0) @ LUMINANCE
-    return share[:, None]
+def _sound(colours: Floats | Singles) -> Floats:
+    share: Floats = np.clip(np.nan_to_num(colours, posinf=1.0), 0.0, 1.0).astype(np.float64)
+    return share

@@ -186,8 +186,19 @@ class RayScene:
         if blockers is None:
             return self
         other = copy.copy(self)
-        other._of_shadow, other._whole = self._of_blockers[blockers], self
+        other._of_shadow, other._whole = self._of_blockers[blockers], self._whole or self
         return other
+
+    def in_channels(self) -> tuple[RayScene, ...]:
+        """The same scene for light of each channel, where what goes through is tinted; else it alone."""
+        if self.transmittance is None or not self.transmittance.channels:
+            return (self,)
+        scenes = []
+        for channel in self.transmittance.channels:
+            other = copy.copy(self)
+            other.transmittance, other._whole = channel, self._whole or self
+            scenes.append(other)
+        return tuple(scenes)
 
     def close(self) -> None:
         """End the threads."""

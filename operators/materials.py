@@ -225,8 +225,6 @@ class _ShaderReader:
         reflectance, emission, through, translucence = self._shader(_input(output, "Surface"), ())
         if not varies(through):
             through = np.clip(through, 0.0, 1.0)
-            if np.ptp(through) > _TINTED:
-                self.notes.append("the tint of what it lets through is left out")
         if not varies(emission) and np.any(emission < 0.0):
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
@@ -512,9 +510,6 @@ _BLENDS = {
 
 _CLEAR = 0.999
 """Share of the light that is let through from which on a material counts as not being there."""
-
-_TINTED = 0.01
-"""Difference between the channels of what is let through from which on it has a tint."""
 
 _STRETCHED = 4.0
 """Times that an image may be stretched until the longer way decides how much of it is averaged."""

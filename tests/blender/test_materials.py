@@ -222,10 +222,9 @@ def test_a_transparent_material_lets_light_through_and_one_in_part_a_part_of_it(
     assert surface.through == pytest.approx(np.full(3, 0.5)) and not surface.clear
 
 
-def test_of_tinted_glass_it_is_said_that_the_tint_is_left_out():
-    (note,) = assert_surface(node_material("Pane", "ShaderNodeBsdfTransparent", Color=(0.9, 0.2, 0.2, 1.0)), 0.0)
-    assert "tint" in note
-    assert material_surface(node_material("Smoke", "ShaderNodeBsdfTransparent", Color=(0.5, 0.5, 0.5, 1.0))).notes == ()
+def test_a_transparent_shader_lets_its_colour_through():
+    surface = material_surface(node_material("Pane", "ShaderNodeBsdfTransparent", Color=(0.9, 0.2, 0.2, 1.0)))
+    assert surface.through == pytest.approx([0.9, 0.2, 0.2]) and surface.notes == ()
 
 
 def sided_material(front, back):
