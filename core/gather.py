@@ -20,7 +20,6 @@ from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP, ESCAPED
 from .sampling import Singles, even_chances, frames, hemisphere_lattice
 from .scene import Floats, Ints
-from .surfaces import HAIR
 from .transport import Transport
 from .visibility import OFFSET, Hits, RayScene
 from .workers import Workers
@@ -342,7 +341,7 @@ def _covered(
 
 def _touching(transport: Transport, inward: Floats, finest: float, distance: Singles) -> NDArray[np.bool_]:
     # Solids are smaller by a hair for rays.
-    reach = np.float32(max(TOUCHING * transport.rays.scale * finest, 10.0 * HAIR))
+    reach = np.float32(transport.rays.scale * max(TOUCHING * finest, 10.0 * transport.surfaces.hair))
     # On the border of its own surface a vertex gathers aside, and meets what is beside it from there.
     result: NDArray[np.bool_] = ((distance < reach).mean(axis=1) > LEAST_TOUCHING_SHARE) & ~inward.any(axis=1)
     return result

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -110,8 +111,7 @@ class Surfaces:
         Where a cupboard stands against a wall, two faces lie in one plane, and a ray from inside the cupboard met by
         chance its back or the wall, as if the cupboard were open to the room.
         """
-        solid = self.closed & (signed_volumes(self) > 0.0)
-        chosen = self.triangles[solid[self.shell_of_triangle]]
+        chosen = self._of_solids
         place = self.place_of_point[chosen]
         cross = triangle_cross(self.points, chosen)
         outward = np.stack(
@@ -121,12 +121,22 @@ class Surfaces:
             ],
             axis=1,
         )
+        moved: Floats = self.points - self.hair * normalized(outward)[self.place_of_point]
+        return moved
+
+    @cached_property
+    def hair(self) -> float:
+        """How much solids are smaller for rays, scene units."""
         used = self.points[self.triangles.ravel()]
         middle = (used.min(axis=0) + used.max(axis=0)) / 2.0
         # On a wide ground, rays are as fine near its middle as the coordinates there, which are small.
-        reach = 2.0 * float(np.abs(self.points[chosen] - middle).max(initial=0.0))
-        moved: Floats = self.points - HAIR * reach * normalized(outward)[self.place_of_point]
-        return moved
+        return HAIR * 2.0 * float(np.abs(self.points[self._of_solids] - middle).max(initial=0.0))
+
+    @cached_property
+    def _of_solids(self) -> Ints:
+        """Triangles of what has an inside, (k, 3)."""
+        solid = self.closed & (signed_volumes(self) > 0.0)
+        return self.triangles[solid[self.shell_of_triangle]]
 
     def blockers(self) -> dict[frozenset[int], NDArray[np.bool_]]:
         """The triangles that hide light of some blockers only, (t,), by these."""

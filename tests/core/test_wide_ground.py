@@ -13,7 +13,7 @@ from radiosity_bake.core.scene import Scene, SunLamp, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
 
-from tests.core.building import mean_over, room_with_block
+from tests.core.building import block, mean_over, room_with_block
 from tests.scenes import exact
 
 DRAFT = BakeSettings(quality="DRAFT", keep_transport=False)
@@ -88,3 +88,16 @@ def test_slivers_that_seem_to_see_something_do_not_make_a_lone_ball_fine():
     result = bake(Scene((ball,), np.zeros(3), (sun,)), DRAFT)
     assert result.report["patches"] < len(ball.triangles)
     assert result.report["minimum_size"] > 0.01
+
+
+def test_a_gap_above_a_lamp_is_no_outline_however_wide_the_ground_is():
+    meshes = (
+        block("floor", (-3.2, -2.7, -0.1), (3.2, 2.7, 0.0)),
+        block("roof", (-3.2, -2.7, 2.8), (3.2, 2.7, 3.0)),
+        block("lamp", (-0.5, -0.5, 2.75), (0.5, 0.5, 2.77), reflectance=0.0),
+    )
+    meshes[2].emission[meshes[2].corner_normals[:, 0, 2] < -0.5] = 5.0
+    scene = Scene(meshes, np.zeros(3))
+    small, wide = (bake(on_ground(scene, side, False), DRAFT).report["vertices"] for side in (8.0, 6000.0))
+    # By a hair of the ground's width, all vertices in the gap of 30 mm were taken for such: three times as many.
+    assert wide <= 2.0 * small
