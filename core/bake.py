@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from . import refinement
 from .balance import balance_of, direct_on_patches
 from .cells import Cells, Radiance
+from .checks import check_places, receivers_of_checks
 from .clock import Clock
 from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
@@ -23,7 +24,16 @@ from .direct import all_emitters
 from .divisions import Divisions, blocked_edges
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
 from .interpolation import PlacesOnFaces, receivers_of_nodes
-from .lighting import Story, TracedCuts, TracedPatches, check_light, light_of_patches, looked_again, result_of
+from .lighting import (
+    Story,
+    TracedCuts,
+    TracedPatches,
+    check_light,
+    cut_light,
+    light_of_patches,
+    looked_again,
+    result_of,
+)
 from .lit import Lit
 from .patches import clustered_patches, coarse_count
 from .progress import ProgressCallback, no_progress
@@ -253,6 +263,11 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         )
         cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
 
+    expected = shown.expected_error(surfaces)
+    cut = cut_light(shown, cuts)
+    checks = check_places(shown.areas_of(surfaces, cut[0], cut[1]), len(shown.places.points))
+    checks = replace(checks, gathered=gather_at(receivers_of_checks(surfaces, cut[0], cut[1], checks)))
+
     clock.start("Reconstructing", 0.98, 1.0)
     crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
     counts: dict[str, Any] = {
@@ -274,9 +289,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "ended": rounds.ended,
     }
     story = Story(settings, counts, limit_warnings(rounds, per_row, effort, crowded))
-    kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, story)
+    kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, checks, story)
     parts = partial(parts_of, kept, scene, rays.workers)
-    result = result_of(scene, surfaces, lit, patches, light.solution, shown, cuts, story, clock, parts)
+    result = result_of(scene, surfaces, lit, patches, light.solution, expected, cut, checks, story, clock, parts)
     return replace(result, kept=keep(kept)) if settings.keep_transport else result
 
 

@@ -1,20 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far off a baked mesh is: noise of the gather, and what linear interpolation between vertices misses."""
+"""How far off a baked mesh is: by what is missed between vertices, by noise of the gather and by lost light."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .direct import LUMINANCE
+from .checks import Checks
 from .geometry import lengths, triangle_areas
 from .scene import Floats, Ints
 
-SAFETY = 2.0
-"""What the estimate is multiplied by: it cannot see the error of the patches' own radiosity, nor a shadow that falls
-between all vertices; on the benchmark's scenes the true error is up to 1.6 times what it can see."""
+SAFETY = 1.75
+"""What the estimate is multiplied by: it cannot see what all rays of the gather agree on, such as the error of the
+patches' own radiosity, nor every small place."""
 
 
 LIT_AREA_STEP = 1e-3
@@ -25,10 +27,14 @@ DIM = 1.0 / 16.0
 room would otherwise halve the mean, and so the error that is allowed, as often as it is doubled."""
 
 
-def lit_area(area: Floats, light: Floats) -> tuple[float, float]:
+BLACK = 1.0 / 256.0
+"""The same in the estimate, which is to be that of all the surface where it has any light to speak of."""
+
+
+def lit_area(area: Floats, light: Floats, dim: float = DIM) -> tuple[float, float]:
     """Area that has light, and the mean light of all over it.
 
-    What is dimmer than `DIM` of this mean counts for as much of its area as it has of that.
+    What is dimmer than a share `dim` of this mean counts for as much of its area as it has of that.
 
     Parameters
     ----------
@@ -45,7 +51,7 @@ def lit_area(area: Floats, light: Floats) -> tuple[float, float]:
         return 0.0, 0.0
     # Less area makes the mean larger, which dims the rest: it falls from step to step to the largest that fits itself.
     while True:
-        fitting = float(np.minimum(area, light * counted / (DIM * total)).sum())
+        fitting = float(np.minimum(area, light * counted / (dim * total)).sum())
         if fitting > (1.0 - LIT_AREA_STEP) * counted:
             return counted, total / counted
         counted = fitting
@@ -108,22 +114,61 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     return np.sqrt(square)
 
 
-def relative_error(corners: Floats, of_corner: Ints, irradiance: Floats, noise: Floats, weight: Floats) -> float:
-    """Estimate the RMS error relative to the mean: interpolation and noise added in squares, times `SAFETY`.
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """What the light at the vertices of face sides lets expect of the error.
+
+    Attributes
+    ----------
+    weight : (f,) float
+        Area that counts (of emitters and of what is hidden, none).
+    light : (f,) float
+        Mean luminance.
+    missed : (f,) float
+        Squared error of interpolation.
+    noise : (f,) float
+        Squared standard error.
+    front : (f,) bool
+    """
+
+    weight: Floats
+    light: Floats
+    missed: Floats
+    noise: Floats
+    front: NDArray[np.bool_]
+
+
+def relative_error(expected: Expected, checks: Checks, fronts: int, irradiance: Floats, imbalance: float) -> float:
+    """Estimate the RMS error relative to the mean: over the fronts, or over all sides if that is more.
+
+    Interpolation, the noise that vertices have in common and lost light are added in squares. What interpolation misses
+    is the mean of two: what is expected is known everywhere, what the checks find is true, but of few places.
 
     Parameters
     ----------
-    corners : (f, 3, 3) float
-    of_corner : (f, 3) int
-    irradiance : (f, 3, 3) float
-        At the corners.
-    noise : (n,) float
-        Of the receivers.
-    weight : (f,) float
-        Area that counts (of emitters and of what is buried, none).
+    expected : Expected
+    checks : Checks
+    fronts : int
+        Face sides that the checks are on and that are fronts; backs are behind them.
+    irradiance : (f, 3, 3) float, W m^-2 sr^-1
+        At the corners of these.
+    imbalance : float
+        Share of the power that is unaccounted for.
     """
-    luminance = irradiance @ LUMINANCE
-    missed = interpolation_error(corners, of_corner, luminance)
-    square = missed**2 + (noise[of_corner] ** 2).mean(axis=1) / 2.0
-    area, mean = lit_area(weight, weight * luminance.mean(axis=1))
-    return SAFETY * math.sqrt(float(weight @ square) / area) / mean if mean > 0.0 else 0.0
+    light = np.einsum("kc,kcx->kx", checks.weights, irradiance[checks.row])
+    light[checks.gathered.hidden] = 0.0
+    found = (checks.missed(irradiance) ** 2).mean(axis=1)
+    largest = 0.0
+    # The backs of walls under a bright sky would hide what is wrong in a room.
+    for sides, asked in ((expected.front, checks.row < fronts), (True, True)):
+        weight, area = expected.weight * sides, checks.areas * asked
+        missed, noise = (_relative(weight, expected.light, square) for square in (expected.missed, expected.noise))
+        square = (missed + _relative(area, light.mean(axis=1), found) + noise) / 2.0 + imbalance**2
+        largest = max(largest, SAFETY * math.sqrt(square))
+    return largest
+
+
+def _relative(area: Floats, light: Floats, square: Floats) -> float:
+    """Mean of squares over an area, relative to the square of the mean light; 0 in the dark."""
+    lit, mean = lit_area(area, area * light, BLACK)
+    return float(area @ square) / lit / mean**2 if mean > 0.0 else 0.0

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from .balance import Balance, check_solved, energy, left_emission, seen_radiance, unreflected_light
 from .cells import Cells, Radiance
+from .checks import Checks
 from .clock import Clock
 from .cutting import CutEdges, cut_faces, drawn_to_cut, values_on_outlines
 from .direct import Emitters
 from .direct_light import DirectLight
+from .error_estimate import Expected, relative_error
 from .errors import NoLightError
 from .gather import Gathered, look_again
 from .interpolation import InterpolatedRadiance, PlacesOnFaces
@@ -198,8 +200,9 @@ def result_of(
     lit: NDArray[np.bool_],
     patches: TracedPatches,
     solution: Solution,
-    shown: Lit,
-    cuts: TracedCuts | None,
+    expected: Expected,
+    cut: tuple[Faces, Ints, Floats],
+    checks: Checks,
     story: Story,
     clock: Clock,
     parts_of: Callable[[Floats], tuple[Part, list[Part]]],
@@ -209,14 +212,20 @@ def result_of(
     Parameters
     ----------
     lit : (shells, 2) bool
-    cuts : TracedCuts or None
-        None where faces are not cut.
+    expected : Expected
+        Of the faces before they were cut.
+    cut
+        Faces, face sides and values, as `cut_light` gives them.
+    checks : Checks
+        On these.
     parts_of : callable
         Gives the light that was asked for and its groups, of all the light at the corners of the faces.
     """
-    # Before the meshes are there, as it takes much memory of its own.
-    error = shown.error(surfaces)
-    faces, face, irradiance = cut_light(shown, cuts)
+    faces, face, irradiance = cut
+    from_lamps, from_suns = (patches.direct.irradiance(patches.emitters.lamps_alone(suns)) for suns in (False, True))
+    from_linked = patches.direct.irradiance(patches.emitters.linked_alone())
+    balance = energy(patches.balance, solution, from_lamps, from_suns, from_linked, surfaces)
+    error = relative_error(expected, checks, len(faces.triangle), irradiance, balance["imbalance"])
     output = story.settings.output
 
     def meshes_of(part: Part) -> tuple[tuple[BakedMesh, ...], list[str]]:
@@ -226,9 +235,6 @@ def result_of(
     asked, groups = parts_of(irradiance) if wants_parts(story.settings) else (Part("", scene, irradiance), [])
     meshes, warnings = meshes_of(asked)
     meshes = with_groups(meshes, [(group.name, meshes_of(group)[0]) for group in groups])
-    from_lamps, from_suns = (patches.direct.irradiance(patches.emitters.lamps_alone(suns)) for suns in (False, True))
-    from_linked = patches.direct.irradiance(patches.emitters.linked_alone())
-    balance = energy(patches.balance, solution, from_lamps, from_suns, from_linked, surfaces)
     clock.stop()
     report: dict[str, Any] = {
         **story.counts,

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .direct import LUMINANCE
-from .error_estimate import lit_area, relative_error
+from .error_estimate import Expected, interpolation_error, lit_area
 from .gather import Gathered, corner_values
 from .geometry import triangle_areas
 from .patches import PatchTree
@@ -57,12 +57,31 @@ class Lit:
         area = triangle_areas(self.faces.points[self.faces.corners[self.face]])
         return np.where(dark & shown, area * self.share[self.face], 0.0)
 
-    def error(self, surfaces: Surfaces) -> float:
-        """Estimated RMS error over the surface, relative to its mean."""
+    def expected_error(self, surfaces: Surfaces) -> Expected:
+        """What the light at the vertices lets expect of the error of the face sides."""
         corners = self.faces.points[self.faces.corners[self.face]]
-        return relative_error(
-            corners, self.places.of_corner, self.corner_irradiance(), self.gathered.noise, self.weights(surfaces)
+        luminance = self.corner_irradiance() @ LUMINANCE
+        return Expected(
+            self.weights(surfaces),
+            luminance.mean(axis=1),
+            interpolation_error(corners, self.places.of_corner, luminance) ** 2,
+            (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1),
+            self.side == 0,
         )
+
+    def areas_of(self, surfaces: Surfaces, faces: Faces, face: Ints) -> Floats:
+        """Area of sides of faces that these were cut into, (f,), as far as their error counts; hidden ones alike.
+
+        Parameters
+        ----------
+        face : (f,) int
+        """
+        share = np.ones(int(self.faces.node.max(initial=0)) + 1)
+        share[self.faces.node] = self.share
+        emission = surfaces.emission_over(faces.triangle, faces.weights)
+        area = triangle_areas(faces.points[faces.corners]) * share[faces.node]
+        counted: Floats = np.where(np.all(emission == 0.0, axis=1), area, 0.0)[face]
+        return counted
 
     def noise(self, surfaces: Surfaces) -> float:
         """Noise of the hemisphere rays over the surface, relative to the mean of what has light."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cells import Radiance
+from .checks import Checks
 from .clock import Clock
 from .errors import BakeError
 from .interpolation import PlacesOnFaces
@@ -34,7 +35,8 @@ from .lit import Lit
 from .parts import NotDividedError, Part, divided
 from .progress import ProgressCallback, no_progress
 from .result import BakeResult
-from .scene import Floats, Lamp, LightLinking, Scene, SurfaceMesh
+from .scene import Floats, Ints, Lamp, LightLinking, Scene, SurfaceMesh
+from .subdivision import Faces
 from .surfaces import Surfaces
 from .workers import Workers
 
@@ -63,6 +65,8 @@ class KeptTransport:
     on_faces : PlacesOnFaces or None
         None where rays are not looked up in the light of the vertices.
     cuts : TracedCuts or None
+    checks : Checks
+        On the faces, cut.
     story : Story
     """
 
@@ -73,6 +77,7 @@ class KeptTransport:
     shown: Lit
     on_faces: PlacesOnFaces | None
     cuts: TracedCuts | None
+    checks: Checks
     story: Story
 
 
@@ -96,7 +101,8 @@ def keep(kept: KeptTransport) -> KeptTransport | NotKept:
 
 def is_complete(kept: KeptTransport) -> bool:
     """Whether all places that rays met are known, which the memory limit may have prevented."""
-    gathers = [kept.shown.gathered, *((kept.cuts.seen, kept.cuts.hidden) if kept.cuts else ())]
+    gathers = [kept.shown.gathered, kept.checks.gathered]
+    gathers += [kept.cuts.seen, kept.cuts.hidden] if kept.cuts else []
     return all(len(gathered.places) == 0 or gathered.places.rays > 0 for gathered in gathers)
 
 
@@ -205,28 +211,42 @@ def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Wor
     light = light_of_patches(patches, surfaces)
 
     clock.start("Gathering", 0.4, 0.9)
-    shown, cuts = _gathered_again(kept, patches, light, surfaces, workers)
+    shown, cut, radiance = _gathered_again(kept, patches, light, surfaces, workers)
+    checks = replace(kept.checks, gathered=relit(workers, patches.emitters, radiance, kept.checks.gathered))
 
     clock.start("Reconstructing", 0.9, 1.0)
     counts = {**kept.story.counts, "relit": True, "rays": 0, "seconds_in_ray_library": 0.0}
     counts["rays_by_kind"] = dict.fromkeys(counts["rays_by_kind"], 0)
     story = replace(kept.story, counts=counts)
     parts = partial(parts_of, kept, scene, workers)
-    return result_of(scene, surfaces, kept.lit, patches, light.solution, shown, cuts, story, clock, parts)
+    return result_of(
+        scene,
+        surfaces,
+        kept.lit,
+        patches,
+        light.solution,
+        shown.expected_error(surfaces),
+        cut,
+        checks,
+        story,
+        clock,
+        parts,
+    )
 
 
 def _gathered_again(
     kept: KeptTransport, patches: TracedPatches, light: PatchLight, surfaces: Surfaces, workers: Workers
-) -> tuple[Lit, TracedCuts | None]:
-    """Light at the vertices of the faces, and at their cuts, in the light of the patches."""
+) -> tuple[Lit, tuple[Faces, Ints, Floats], Radiance]:
+    """The faces in the light of the patches, the same cut, and what rays saw last."""
     radiance = Radiance.of(patches.cells, light.seen, surfaces.world)
     shown = replace(kept.shown, gathered=relit(workers, patches.emitters, radiance, kept.shown.gathered))
     if kept.on_faces is not None:
         shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.on_faces)
     if kept.cuts is None:
-        return shown, None
+        return shown, cut_light(shown, None), radiance
     seen, hidden = (relit(workers, patches.emitters, radiance, side) for side in (kept.cuts.seen, kept.cuts.hidden))
-    return shown, TracedCuts(kept.cuts.edges, seen, hidden)
+    cut = cut_light(shown, TracedCuts(kept.cuts.edges, seen, hidden))
+    return shown, cut, radiance
 
 
 def parts_of(kept: KeptTransport, scene: Scene, workers: Workers, whole: Floats) -> tuple[Part, list[Part]]:
@@ -251,7 +271,8 @@ def parts_of(kept: KeptTransport, scene: Scene, workers: Workers, whole: Floats)
         surfaces = kept.surfaces.recoloured(other)
         patches = kept.patches.recoloured(surfaces)
         light = light_of_patches(patches, surfaces)
-        return cut_light(*_gathered_again(kept, patches, light, surfaces, workers))[2]
+        _, (_, _, irradiance), _ = _gathered_again(kept, patches, light, surfaces, workers)
+        return irradiance
 
     return divided(scene, kept.story.settings, whole, irradiance_of)
 
