@@ -76,8 +76,23 @@ EFFORTS = {
     "HIGH": Effort(16_000, 128, 0.004, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
 }
 
+BYTES_PER_CELL = 400
+"""Of what is seen of its two sides, and where these lie on the faces, with the working copies made of them."""
+
+CELLS_SHARE = 0.2
+"""Share of the memory that cells may take."""
+
+BYTES_OF_BATCHES = 12 * 2**20
+"""Of the rays that are on their way."""
+
 BYTES_PER_VERTEX = 4096
-"""Of the receivers, faces and values of a vertex, with the working copies made of them."""
+"""Of the receivers, faces and values of a vertex, with working copies, but without what its rays met."""
+
+BYTES_PER_TRIANGLE = 600
+"""Of the scene, in the ray library too."""
+
+LEAST_VERTICES_SHARE = 0.25
+"""Share of the memory that vertices may take in any case: else what rays and cells leave of it."""
 
 FINER_FACES = 16.0
 """Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
@@ -96,6 +111,9 @@ larger."""
 
 FINER_CUTS = 4.0
 """Times smaller still where the outline of another object crosses them."""
+
+BYTES_PER_SORTED_RAY = 48
+"""Of a traced ray while light is gathered: itself, and its part in the form factors."""
 
 WORKING_COPIES = 6
 """Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
@@ -173,9 +191,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     lit = _lit_sides(surfaces, rays, settings)
 
     walked = rays.rays
-    most_vertices = settings.memory_limit * 2**20 // BYTES_PER_VERTEX
-
-    most_rays = settings.memory_limit * 2**20 // (BYTES_PER_RAY * WORKING_COPIES)
+    memory = settings.memory_limit * 2**20
+    most_rays = memory // (BYTES_PER_RAY * WORKING_COPIES)
     transport, rounds, area = subdivided(surfaces, rays, lit, settings, effort, most_rays, clock)
     tree, per_row = transport.tree, transport.rays_per_row
     smallest, finest = minimum_sizes(surfaces, settings, effort, area)
@@ -198,6 +215,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         max(smallest / CELLS_ALONG_PATCH, finest / CELLS_ALONG_FACE),
         cover,
         COVER_GAP * rays.scale * finest,
+        int(CELLS_SHARE * memory) // BYTES_PER_CELL,
     )
     patches = TracedPatches(len(tree), balance, emitters, direct, cells)
     light = light_of_patches(patches, surfaces)
@@ -206,7 +224,10 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     clock.start("Gathering", 0.5, 0.95)
     radiance = Radiance.of(cells, light.seen, surfaces.world)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
-    most_kept = settings.memory_limit * 2**20 // (2 * BYTES_PER_PLACE)
+    most_kept = memory // (2 * BYTES_PER_PLACE)
+    taken = BYTES_OF_BATCHES + BYTES_PER_SORTED_RAY * transport.kept_rays() + BYTES_PER_CELL * len(cells.node)
+    per_vertex = BYTES_PER_VERTEX + BYTES_PER_PLACE * effort.gather.hemisphere
+    most_vertices = max(memory - taken, int(LEAST_VERTICES_SHARE * memory)) // per_vertex
 
     per_receiver = effort.gather
 
@@ -224,7 +245,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
-    cuts, on_faces = None, None
+    cuts, on_faces, crowded = None, None, False
     walls = ~surfaces.closed[surfaces.shell_of_triangle]
     if settings.output == "ORIGINAL":
         faces = input_faces(surfaces)
@@ -232,7 +253,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     else:
         aside = transport.is_aside()
         sizes = FaceSizes(smallest, finest, finest_cut, LARGEST_PATCH * area, most_vertices)
-        shown, leaves = light_up_in_detail(
+        shown, leaves, crowded = light_up_in_detail(
             surfaces,
             lit,
             tree,
@@ -269,7 +290,6 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     checks = replace(checks, gathered=gather_at(receivers_of_checks(surfaces, cut[0], cut[1], checks)))
 
     clock.start("Reconstructing", 0.98, 1.0)
-    crowded = settings.output == "REFINED" and len(shown.places.points) > most_vertices
     counts: dict[str, Any] = {
         "relit": False,
         "patches": len(tree.patches()),
@@ -288,7 +308,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
     }
-    story = Story(settings, counts, limit_warnings(rounds, per_row, effort, crowded))
+    taken += BYTES_PER_TRIANGLE * len(surfaces.triangles) + BYTES_PER_VERTEX * len(shown.places.points)
+    warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory)
+    story = Story(settings, counts, warnings)
     kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, checks, story)
     parts = partial(parts_of, kept, scene, rays.workers)
     result = result_of(scene, surfaces, lit, patches, light.solution, expected, cut, checks, story, clock, parts)
@@ -393,9 +415,9 @@ def subdivide(
 
 
 def limit_warnings(
-    rounds: refinement.Refinement, rays_per_patch: int, effort: Effort, crowded: bool
+    rounds: refinement.Refinement, rays_per_patch: int, effort: Effort, crowded: bool, taken: int, memory: int
 ) -> tuple[str, ...]:
-    """Sentences on limits that the bake ran into."""
+    """Sentences on limits that the bake ran into, when it took so many bytes of so many that it may take, at least."""
     warnings = []
     if rounds.ended == refinement.LIMIT_MET:
         warnings.append("The memory limit ended the subdivision early; raise it or the minimum size for an even result")
@@ -405,4 +427,9 @@ def limit_warnings(
         )
     if crowded:
         warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")
+    if taken > memory:
+        warnings.append(
+            f"The scene itself is larger than the memory limit: its bake took about {taken / 2**20:,.0f} MiB, "
+            "which is the least"
+        )
     return tuple(warnings)

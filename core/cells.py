@@ -83,6 +83,7 @@ class Cells:
         size: float,
         cover: Cover,
         shortest_reach: float,
+        most: int = MOST_CELLS,
     ) -> None:
         self._locator = locator
         roots = np.flatnonzero(tree.root == np.arange(len(tree)))
@@ -90,14 +91,14 @@ class Cells:
         self._tree = tree
         self._is_wide = np.zeros(len(tree) + 1, dtype=bool)
         self._is_wide[wide] = True
-        most = np.full(len(tree), MOST_CELLS_ALONG_EDGE)
+        most_along = np.full(len(tree), MOST_CELLS_ALONG_EDGE)
         if len(wide):
             leaves = tree.leaves()
             leaves = leaves[self._is_wide[tree.root[leaves]]]
-            most[leaves] = MOST_CELLS_ALONG_LEAF
+            most_along[leaves] = MOST_CELLS_ALONG_LEAF
             roots = np.union1d(roots[~self._is_wide[roots]], leaves)
-        along = np.clip(np.ceil(tree.sizes(roots) / size), 1, most[roots]).astype(np.int64)
-        while (along**2).sum() > MOST_CELLS and along.max() > 1:
+        along = np.clip(np.ceil(tree.sizes(roots) / size), 1, most_along[roots]).astype(np.int64)
+        while (along**2).sum() > min(most, MOST_CELLS) and along.max() > 1:
             along = np.minimum(along, max(1, int(0.8 * along.max())))
         cells = along**2
         self._first = np.zeros(len(tree) + 1, dtype=np.int32)

@@ -53,7 +53,7 @@ class FaceSizes:
         Area that a patch counts for at most: one that nothing is near enough to for the form factors to have split it
         is background, however wide.
     most_vertices : int
-        Receivers after which no face is split any more.
+        Receivers that there may be.
     """
 
     patches: float
@@ -62,6 +62,9 @@ class FaceSizes:
     largest: float
     most_vertices: int
 
+
+RECEIVERS_OF_SPLIT = 2
+"""More receivers that a split makes, about: at the middles of edges, which neighbours share, and to fit to these."""
 
 GatherAt = Callable[[Receivers], Gathered]
 
@@ -83,7 +86,7 @@ def light_up_in_detail(
     light_up_first: Callable[[Faces, Floats], Lit],
     gather_at: GatherAt,
     is_hidden: IsHidden,
-) -> tuple[Lit, PatchTree]:
+) -> tuple[Lit, PatchTree, bool]:
     """Gather light at the corners of a conforming mesh, and split its faces until the estimated error is small.
 
     Parameters
@@ -106,7 +109,8 @@ def light_up_in_detail(
 
     Returns
     -------
-    The faces and their light, and the tree whose leaves they lie in.
+    The faces and their light, the tree whose leaves they lie in, and whether there would be too many vertices if they
+    were split as they should be.
     """
     shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, light_up_first, gather_at)
 
@@ -149,15 +153,18 @@ def light_up_in_detail(
                 nodes.append(_nodes_with_crooked_cuts(lit, faces, shown.tree, sizes, is_hidden))
         return np.sort(np.concatenate(nodes))
 
+    full = False
     for nodes_to_split in (split_on_strips, split_by_feet, split_by_error, split_by_outline):
         first_new = 0
         for _ in range(MOST_ROUNDS):
             nodes = nodes_to_split(first_new)
-            if len(nodes) == 0 or shown.receivers() > sizes.most_vertices:
+            crowded = shown.receivers() + RECEIVERS_OF_SPLIT * len(nodes) > sizes.most_vertices
+            if len(nodes) == 0 or crowded:
+                full |= len(nodes) > 0
                 break
             first_new = len(shown.tree)
             shown.split(nodes)
-    return shown.all(), shown.tree
+    return shown.all(), shown.tree, full
 
 
 class _ShownFaces:

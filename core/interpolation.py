@@ -31,8 +31,8 @@ patch's own radiosity: what was gathered at three points says less of its mean t
 MOST_CORRECTED = 0.1
 """Share by which the light at the vertices is made to agree with the patches' power at most."""
 
-ROWS_AT_ONCE = 2**14
-"""Receivers whose rays are looked through at once."""
+MET_AT_ONCE = 2**20
+"""Places met by rays that are looked through at once."""
 
 
 class PlacesOnFaces:
@@ -68,8 +68,9 @@ class PlacesOnFaces:
         # Behind the places come the cells of the world's map.
         seen = np.zeros(count + MAP_CELLS, dtype=bool)
         # As indices, places take twice the memory, which is that of all gather rays: some at a time.
-        for first in range(0, len(met), ROWS_AT_ONCE):
-            some = met.between(first, first + ROWS_AT_ONCE)
+        rows = MET_AT_ONCE // max(met.rays, 1)
+        for first in range(0, len(met), rows):
+            some = met.between(first, first + rows)
             seen[some[some >= 0]] = True
         seen[cells.copied] |= seen[count - len(cells.copied) : count]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)

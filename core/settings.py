@@ -49,8 +49,8 @@ class BakeSettings:
     threads : int
         Threads that trace rays; 0 takes every core. The result does not depend on it.
     memory_limit : int
-        What the traced rays and the working arrays made of them may take, in MiB; a small one gives fewer patches and
-        rays, and a warning.
+        What a bake may take beside the scene itself, in MiB; a small one gives fewer patches, vertices and rays, and
+        a warning.
     keep_transport : bool
         Whether the result holds what the rays met, so that it can be lit again; that, too, stays below the limit.
     light : str

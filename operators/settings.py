@@ -155,8 +155,8 @@ class RadiositySettings(bpy.types.PropertyGroup):
     memory_limit: bpy.props.IntProperty(
         name="Memory Limit (MiB)",
         description=(
-            "Memory that the bake may use for its rays, in MiB. "
-            "A small limit means fewer patches and rays, and a warning"
+            "Memory that the bake may use beside the scene itself, in MiB. "
+            "A small limit means fewer patches, vertices and rays, and a warning"
         ),
         default=DEFAULTS.memory_limit,
         min=64,
