@@ -25,7 +25,7 @@ def test_bake_cancel_and_restore_by_mouse_and_keyboard(real_blender, linux_zip):
 
 def test_whatever_happens_while_a_bake_runs_ends_in_a_sentence_and_a_usable_file(real_blender, linux_zip):
     pictures = PICTURES / real_blender.suite
-    done = play(SCRIPTS / "traps.py", pictures, blender=real_blender, extension=linux_zip, timeout=480, capture=True)
+    done = play(SCRIPTS / "traps.py", pictures, blender=real_blender, extension=linux_zip, timeout=900, capture=True)
     told = f"{done.stdout}\n{done.stderr}"
     assert done.returncode == 0, f"see {pictures}\n{told}"
     assert told.count("Traceback") == told.count(MEANT_TO_FAIL), told
