@@ -43,6 +43,10 @@ tell."""
 LEAST_SLENDERNESS = 4.0
 """Times its thickness that a solid is long at least where it counts as a wall: blocks and legs are not."""
 
+LINES_OF_PATCHES, FEWEST_LINES = 0.5, 64
+"""Lines for each square of a patch's size that the area has, at most, the longest ones, but so many in any case: the
+leaves of a tree cross each other everywhere, and to cut them would make many times the patches that they are worth."""
+
 HEIGHT = 0.05
 """In sizes of the smallest patch: how high above a surface a ray tells how thick is what stands there."""
 
@@ -113,7 +117,15 @@ def find_crossings(surfaces: Surfaces, rays: RayScene, lit: NDArray[np.bool_], s
     lines, thickness = _merged(found, np.concatenate(thick), surfaces)
     size = largest_edges(surfaces.points, surfaces.triangles[lines.triangle])
     shortest = np.maximum(np.minimum(smallest, LEAST_LINE * size), LEAST_SLENDERNESS * thickness)
-    return lines.taken((thickness < LARGEST_THICKNESS * smallest) & (lines.high - lines.low > shortest))
+    length = lines.high - lines.low
+    kept = np.flatnonzero((thickness < LARGEST_THICKNESS * smallest) & (length > shortest))
+    most = max(FEWEST_LINES, int(LINES_OF_PATCHES * float(surfaces.areas.sum()) / smallest**2))
+    corners = surfaces.points[surfaces.triangles[lines.triangle]]
+    beside = np.einsum("kx,kjx->kj", lines.across, corners - corners[:, :1]) - lines.offset[:, None]
+    # What runs along an edge cuts nothing.
+    within = (np.minimum(beside.max(axis=1), -beside.min(axis=1)) > SAME_LINE * size)[kept]
+    longest = np.argsort(-length[kept[within]], kind="stable")[:most]
+    return lines.taken(np.sort(np.concatenate([kept[~within], kept[within][longest]])))
 
 
 def _thickness(

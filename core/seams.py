@@ -26,7 +26,7 @@ SNAP = 1e-4
 LEAST_END = 1e-2
 """Share of an edge within which a line that runs along it ends at its end."""
 
-MOST_PIECES = 2**17
+MOST_PIECES = 2**15
 """Pieces that are made of triangles at most."""
 
 ON_EDGE = 1e-6

@@ -9,7 +9,7 @@ import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.crossings import find_crossings
 from radiosity_bake.core.patches import coarse_patches
-from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.subdivision import conforming_faces
 from radiosity_bake.core.surfaces import join
@@ -167,3 +167,12 @@ def test_a_room_is_as_bright_whether_or_not_its_walls_go_on_beyond_each_other(ce
     # The noise of 64 rays, at a hundred vertices.
     assert crossed == pytest.approx(alone, rel=0.02)
     assert vertices < 3 * fewest
+
+
+def test_leaves_that_cross_each_other_everywhere_are_cut_into_few_pieces():
+    rng = np.random.default_rng(1)
+    corners = rng.normal(size=(400, 1, 3)) + 0.8 * rng.normal(size=(400, 3, 3))
+    crown = surface_mesh("crown", corners.reshape(-1, 3), np.arange(1200).reshape(-1, 3), reflectance=0.5)
+    tree, surfaces = cut_patches(crown)
+    patches = surfaces.areas.sum() / SIZE**2
+    assert 400 < len(tree.leaves()) < 400 + 4 * patches
