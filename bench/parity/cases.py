@@ -46,6 +46,8 @@ class Case:
     ours : callable or None
         Takes the objects once Cycles has baked them, bakes them in a way of its own and returns (c, 3) the colours of
         each; None bakes the scene as it is.
+    note : str
+        What there is to know of the row's difference.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Case:
     quantity: str
     settings: dict[str, Any]
     ours: Callable[[list[Any]], list[Any]] | None
+    note: str
 
 
 _cases: dict[str, Case] = {}
@@ -67,6 +70,7 @@ def case(
     samples: int = SAMPLES,
     quantity: str = "Irradiance",
     ours: Callable[[list[Any]], list[Any]] | None = None,
+    note: str = "",
     **settings: Any,
 ) -> Callable[[Callable[[], list[Any]]], Callable[[], list[Any]]]:
     """Return a decorator that puts the function which builds a scene on the list; its name is the row's."""
@@ -75,7 +79,7 @@ def case(
         topic = build.__module__.rpartition(".")[2]
         if build.__name__ in _cases:
             raise ValueError(f"There are two cases {build.__name__}")
-        _cases[build.__name__] = Case(build.__name__, topic, title, build, samples, quantity, settings, ours)
+        _cases[build.__name__] = Case(build.__name__, topic, title, build, samples, quantity, settings, ours, note)
         return build
 
     return listed

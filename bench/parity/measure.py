@@ -50,6 +50,7 @@ def measure(case: Case, picture: Path) -> dict[str, Any]:
         "title": case.title,
         "quantity": case.quantity,
         **found,
+        **({"note": case.note} if case.note else {}),
         "samples": case.samples,
         "processor_seconds": {"cycles": round(cycles_seconds, 2), "ours": round(our_seconds, 2)},
         "warnings": report["warnings"],

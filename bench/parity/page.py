@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 from ..page.markdown import Lines, paragraph, percent, seconds, table
@@ -38,6 +39,12 @@ PICTURES = (
     "the second less the first, four times enlarged, grey where they agree."
 )
 
+MEASURED = (
+    "Measured in Blender {}. Seconds are those of the processor, summed over its cores, which do not depend on what "
+    "else the machine did: for Cycles, of the two bakes that a row is compared with, of 1,024 samples each, or of more "
+    "where the light is noisy; for ours, of one bake."
+)
+
 WHOLE_FILES = (
     "Everything that renders is baked at GOOD to refined meshes, shown with the textures of its materials, and "
     "restored. Seconds are half of the processor time of the bake; a room has to take less than 60. The difference "
@@ -61,6 +68,14 @@ def met(row: Row) -> bool:
     return kept and "said" not in row and row.get("brightest", 0.0) > 0.0 and seconds_on_two_cores(row) < MOST_SECONDS
 
 
+def versions(rows: dict[str, Row]) -> str:
+    """Return the versions of Blender that rows were measured in, newest last, with how many when there are several."""
+    found = Counter(row["blender"] for row in rows.values() if "blender" in row)
+    if len(found) == 1:
+        return next(iter(found))
+    return ", ".join(f"{version} ({found[version]} rows)" for version in sorted(found))
+
+
 def seconds_on_two_cores(row: Row) -> float:
     """Return half of the processor time of a bake, which does not depend on what else the machine did."""
     return float(row.get("processor_seconds", 0.0)) / CORES
@@ -71,7 +86,7 @@ def page(rows: dict[str, Row]) -> str:
     kept = sum(met(row) for row in rows.values())
     lines: Lines = ["# Parity with Cycles", "", "<!-- Written by `python -m bench.parity`. -->", ""]
     lines += [*paragraph(INTRODUCTION), "", *paragraph(COLUMNS), "", *paragraph(PICTURES), ""]
-    lines += [f"**{kept} of {len(rows)} rows are met.**", ""]
+    lines += [f"**{kept} of {len(rows)} rows are met.**", "", *paragraph(MEASURED.format(versions(rows))), ""]
     for topic, title in {**TOPICS, ROOMS: "Rooms like an artist's", FILES: "Files that ship with Blender"}.items():
         found = {name: row for name, row in rows.items() if row["topic"] == topic}
         if found:
@@ -126,12 +141,25 @@ def cells_of_file(name: str, row: Row) -> list[str]:
 
 def section(title: str, rows: dict[str, Row]) -> Lines:
     """Return the table of one topic, what was said about rows that are not met, and the pictures."""
-    header = ("feature", "Cycles", "ours", "of the mean", "difference", "with rims", "noise", "met")
+    header = (
+        "feature",
+        "Cycles",
+        "ours",
+        "of the mean",
+        "difference",
+        "with rims",
+        "noise",
+        "seconds, Cycles",
+        "ours",
+        "met",
+    )
     lines = [f"## {title}", "", *table(header, [cells(name, row) for name, row in rows.items()]), ""]
     for row in rows.values():
         if not met(row):
             told = [row["failed"]] if "failed" in row else row["warnings"]
             lines += [f"- **{row['title']}** is not met" + (f": {'; '.join(told)}." if told else "."), ""]
+        if "note" in row:
+            lines += [*paragraph(f"- {row['title']}: {row['note']}"), ""]
     return lines + pictures_of(rows)
 
 
@@ -148,7 +176,8 @@ def cells(name: str, row: Row) -> list[str]:
     """Return the cells of a row."""
     title = f"{row['title']} (`{name}`)"
     if "failed" in row:
-        return [title, "", "", "", "", "", "", "no"]
+        return [title, *[""] * 8, "no"]
+    used = row.get("processor_seconds", {})
     return [
         title,
         f"{sum(row['cycles']) / 3:.4g}",
@@ -157,5 +186,6 @@ def cells(name: str, row: Row) -> list[str]:
         percent(row["difference"]),
         percent(row["difference_with_rims"]),
         percent(row["noise"]),
+        *(seconds(used[name]) if name in used else "" for name in ("cycles", "ours")),
         "yes" if met(row) else "**no**",
     ]

@@ -66,7 +66,10 @@ def test_a_file_with_nothing_to_bake_is_met_if_it_is_left_as_it_was():
 def test_the_page_counts_what_is_met_shows_pictures_and_tells_what_failed():
     failed = {"topic": "world", "title": "Sky Texture", "failed": "RuntimeError: no sky"}
     unmet = {**CASE, "title": "Spot", "difference": 0.5, "warnings": ["its texture was left out"], "picture": None}
-    text = page({"sun": CASE, "spot": unmet, "sky": failed, "bedroom": ROOM})
+    noted = {**CASE, "note": "its disk is seen", "blender": "4.2.1"}
+    text = page({"sun": noted, "spot": {**unmet, "blender": "5.2.3"}, "sky": failed, "bedroom": ROOM})
+    assert "- Sun: its disk is seen" in text
+    assert "Measured in Blender 4.2.1 (1 rows), 5.2.3 (1 rows)." in text
     assert "**2 of 4 rows are met.**" in text
     assert "**Spot** is not met: its texture was left out." in text
     assert "**Sky Texture** is not met: RuntimeError: no sky." in text
