@@ -82,12 +82,10 @@ class Surface:
 
     @property
     def is_bare(self) -> bool:
-        """Whether it has no light of its own to show: it is clear, or glass and nothing else."""
-        glass = (
-            self.refraction > 1.0 and not self.unread and not varies(self.reflectance, self.emission, self.translucence)
-        )
-        own = glass and (self.reflectance, self.emission, self.translucence)
-        return self.clear or bool(glass and not np.any(own))
+        """Whether it has no light of its own to show: it is clear, or glass, tinted or not, and nothing else."""
+        own = self.reflectance, self.emission, self.translucence
+        dark = not self.unread and not varies(*own) and not np.any(own)
+        return self.clear or (dark and bool(varies(self.through) or np.any(self.through)))
 
     def colours(self) -> tuple[Colour | Varying, ...]:
         """Return all that may vary."""

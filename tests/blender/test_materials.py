@@ -225,6 +225,7 @@ def test_a_transparent_material_lets_light_through_and_one_in_part_a_part_of_it(
 def test_a_transparent_shader_lets_its_colour_through():
     surface = material_surface(node_material("Pane", "ShaderNodeBsdfTransparent", Color=(0.9, 0.2, 0.2, 1.0)))
     assert surface.through == pytest.approx([0.9, 0.2, 0.2]) and surface.notes == ()
+    assert surface.is_bare and not surface.clear
 
 
 def sided_material(front, back):
