@@ -89,6 +89,20 @@ def test_a_point_finds_the_piece_that_it_lies_in(name):
         np.testing.assert_allclose(weights, inside[:, 1:], atol=64 * 4 * np.finfo(np.float32).eps / 0.02)
 
 
+def test_a_point_finds_its_piece_in_triangles_that_were_cut_before():
+    tree = PatchTree(strip_of(1.0, 1e-3))
+    tree.bisect(np.array([0, 1]), np.array([0, 1]), np.array([0.3, 0.4]))
+    leaves = tree.leaves()
+    lengths = np.linalg.norm(np.diff(tree.points[tree.corners[leaves][:, [0, 1, 2, 0]]], axis=1), axis=2)
+    tree.slice(leaves, parts_of_edges(lengths, np.full(len(leaves), 0.02)))
+    rng = np.random.default_rng(4)
+    piece = rng.choice(tree.leaves(), 3000)
+    inside = 0.98 * rng.dirichlet((1.0, 1.0, 1.0), len(piece)) + 0.02 / 3.0
+    w = np.einsum("nk,nkx->nx", inside, tree.weights[piece])[:, 1:].astype(np.float32)
+    found, _ = tree.descend(tree.triangle[piece], w)
+    np.testing.assert_array_equal(found, piece)
+
+
 def test_every_point_has_weights_within_the_piece_that_it_finds():
     tree = coarse_patches(join(Scene((surface_mesh("sliver", triangle("cap", 0), [(0, 1, 2)]),), DARK)), 1e-5)
     w = np.random.default_rng(3).dirichlet((1.0, 1.0, 1.0), 20_000)[:, 1:].astype(np.float32)
