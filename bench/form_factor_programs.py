@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """raystrack and pyViewFactor on cases, in a process of their own: `python form_factor_programs.py CASE.npz ...`.
 
+A name of one before the cases runs that one alone.
 Reads plain arrays (see `bench.form_factors`), prints a line of JSON for each, and imports nothing of ours. What numba
 compiles is compiled before the clock runs.
 """
@@ -107,16 +108,21 @@ def pyviewfactor_runs(arrays: Mapping[str, np.ndarray]) -> Iterator[dict[str, An
         }
 
 
-def main(given: str) -> None:
-    """Run both programs on the case of a file, and print what they find."""
+PROGRAMS = {"raystrack": raystrack_runs, "pyViewFactor": pyviewfactor_runs}
+
+
+def main(given: str, names: Sequence[str]) -> None:
+    """Run programs on the case of a file, and print what they find."""
     with np.load(given) as file:
         arrays = dict(file)
     # What they print is not ours to read.
     with contextlib.redirect_stdout(io.StringIO()):
-        found = [*raystrack_runs(arrays), *pyviewfactor_runs(arrays)]
+        found = [entry for name in names for entry in PROGRAMS[name](arrays)]
     print(json.dumps(found), flush=True)
 
 
 if __name__ == "__main__":
+    wanted = [name for name in sys.argv[1:] if name in PROGRAMS] or list(PROGRAMS)
     for path in sys.argv[1:]:
-        main(path)
+        if path not in PROGRAMS:
+            main(path, wanted)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import json
+import resource
 import subprocess
 import sys
 import tempfile
@@ -32,6 +33,10 @@ RAYS = 4**9
 # Triangles are split into four so many times for pyViewFactor; its pairs do not get better by it.
 LEVEL = 1
 
+# Seconds of processor time and bytes that raystrack and pyViewFactor have for a case.
+PATIENCE = 60
+MOST_MEMORY = 6 * 2**30
+
 # Of Cycles at each vertex, and the most bounces that it has.
 SAMPLES = 1024
 BOUNCES = 1024
@@ -56,8 +61,7 @@ def answers(sweep: Sweep, cases: Sequence[Case], programs: Sequence[str]) -> dic
     wanted = [name for name in (RAYSTRACK, PYVIEWFACTOR) if name in programs]
     python = form_factors.peer_python()
     if wanted and python is not None:
-        pairs = by_form_factor_programs(cases, python)
-        found |= {name: [pair.get(name, {"failed": "no answer"}) for pair in pairs] for name in wanted}
+        found |= {name: [by_form_factor_program(name, case, python) for case in cases] for name in wanted}
     return found
 
 
@@ -97,33 +101,35 @@ def counted(case: Case, rays: int = RAYS) -> Found:
 # --------------------------------------------------------------------------------------------------------------- peers
 
 
-def by_form_factor_programs(cases: Sequence[Case], python: str) -> list[dict[str, Found]]:
-    """Return what raystrack and pyViewFactor say of each case, by name, from a process of their own.
+def by_form_factor_program(name: str, case: Case, python: str) -> Found:
+    """Return what raystrack or pyViewFactor says of a case, from a process of its own, with limits.
 
     Rays go from the smaller of the two surfaces, where few would be lost; reciprocity turns the factor round.
     """
-    turned = []
+    areas = [total_area(case.scene.meshes[k]) for k in (case.receiver, case.emitter)]
+    backward = areas[1] < areas[0]
+    sender, receiver = (case.emitter, case.receiver) if backward else (case.receiver, case.emitter)
+    arrays = form_factors.case_arrays(form_factors.Case("", case.scene, sender, receiver, case.truth, ""))
+    levels = arrays["levels"]
+    arrays |= {"rays": np.array([RAYS]), "seeds": np.array([0]), "levels": levels[levels <= LEVEL][-1:]}
+    script = Path(form_factors.__file__).with_name("form_factor_programs.py")
     with tempfile.TemporaryDirectory() as folder:
-        paths = []
-        for number, case in enumerate(cases):
-            areas = [total_area(case.scene.meshes[k]) for k in (case.receiver, case.emitter)]
-            backward = areas[1] < areas[0]
-            turned.append(areas[1] / areas[0] if backward else 1.0)
-            sender, receiver = (case.emitter, case.receiver) if backward else (case.receiver, case.emitter)
-            arrays = form_factors.case_arrays(form_factors.Case("", case.scene, sender, receiver, case.truth, ""))
-            levels = arrays["levels"]
-            arrays |= {"rays": np.array([RAYS]), "seeds": np.array([0]), "levels": levels[levels <= LEVEL][-1:]}
-            paths.append(Path(folder) / f"{number}.npz")
-            np.savez(paths[-1], **arrays)
-        script = Path(form_factors.__file__).with_name("form_factor_programs.py")
-        done = subprocess.run([python, str(script), *map(str, paths)], stdout=subprocess.PIPE, text=True, check=False)
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    # After what ends the process there is no answer any more.
-    answers += [[]] * (len(cases) - len(answers))
-    return [
-        {each["method"].split()[0]: {"said": each["factors"][0] * times} for each in answer}
-        for answer, times in zip(answers, turned, strict=True)
-    ]
+        path = Path(folder) / "case.npz"
+        np.savez(path, **arrays)
+        command = [python, str(script), name, str(path)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, preexec_fn=limit_itself)
+    if done.returncode < 0:
+        return {"failed": f"no answer in {PATIENCE} s of processor time"}
+    if done.returncode != 0:
+        told = done.stderr.strip().splitlines()
+        return {"failed": told[-1][:200] if told else "no answer"}
+    return {"said": json.loads(done.stdout)[-1]["factors"][0] * (areas[1] / areas[0] if backward else 1.0)}
+
+
+def limit_itself() -> None:
+    """Let this process have so much time and memory: a program that asks for all ends others with it."""
+    resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE))
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
 
 
 def total_area(mesh: SurfaceMesh) -> float:
