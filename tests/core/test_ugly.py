@@ -111,7 +111,6 @@ def check_named(ugly: UglyScene, result) -> None:
         assert told == dropped, given_mesh.name
 
 
-@pytest.mark.skipif(not NIGHTLY_SCENES, reason="tried by make nightly alone until a hundred in a row are known to pass")
 @settings(
     max_examples=NIGHTLY_SCENES or 100,
     derandomize=not NIGHTLY_SCENES,
