@@ -19,7 +19,7 @@ from .checks import check_places, receivers_of_checks
 from .clock import Clock
 from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
-from .detail import FaceSizes, counted_share_of_triangles, light_up, light_up_in_detail
+from .detail import FaceSizes, GatherAt, counted_share_of_triangles, light_up, light_up_in_detail
 from .direct import all_emitters
 from .divisions import Divisions, blocked_edges
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
@@ -282,7 +282,12 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
                 edges_under_walls(shown.faces, shown.places, hidden, ways),
             ]
         )
-        cuts = TracedCuts(edges, *(gather_at(where) for where in cut_receivers(shown.faces, shown.places, edges)))
+        before, beyond = cut_receivers(shown.faces, shown.places, edges)
+        # What is beyond an edge that ends on the outline is not asked for, and what nothing can see is dark.
+        asked = np.flatnonzero(~edges.whole)
+        dark = np.ones(len(edges.whole), dtype=bool)
+        dark[asked] = is_hidden(beyond.taken(asked))
+        cuts = TracedCuts(edges, gather_at(before), gather_unless(dark, beyond, gather_at))
 
     expected = shown.expected_error(surfaces)
     cut = cut_light(shown, cuts)
@@ -315,6 +320,15 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     parts = partial(parts_of, kept, scene, rays.workers)
     result = result_of(scene, surfaces, lit, patches, light.solution, expected, cut, checks, story, clock, parts)
     return replace(result, kept=keep(kept)) if settings.keep_transport else result
+
+
+def gather_unless(dark: NDArray[np.bool_], places: Receivers, gather_at: GatherAt) -> Gathered:
+    """Gather light at places, but where it is known to be dark, (n,) bool."""
+    lit = gather_at(places.taken(np.flatnonzero(~dark)))
+    count = int(np.count_nonzero(dark))
+    number = np.empty(len(dark), dtype=np.int64)
+    number[~dark], number[dark] = np.arange(len(dark) - count), len(dark) - count + np.arange(count)
+    return lit.joined(Gathered.dark(count, lit.places.rays), number)
 
 
 def minimum_sizes(surfaces: Surfaces, settings: BakeSettings, effort: Effort, area: float) -> tuple[float, float]:

@@ -124,6 +124,13 @@ class Gathered:
         places = MetPlaces.of(np.zeros((0, rays), np.int32))
         return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, unseen, places)
 
+    @staticmethod
+    def dark(count: int, rays: int) -> Gathered:
+        """At so many receivers that see nothing."""
+        dark, unseen = np.zeros((count, 3)), np.zeros(count, dtype=bool)
+        places = MetPlaces((np.full((1, rays), BELOW, dtype=np.int32),), np.zeros(count, dtype=np.int64), rays)
+        return Gathered(dark, DirectLight.none(count), dark, np.zeros(count), ~unseen, unseen, places)
+
     def taken(self, which: Ints) -> Gathered:
         """At some of the receivers, each at most once."""
         return self.joined(Gathered.none(self.places.rays), which)
