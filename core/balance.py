@@ -210,7 +210,7 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
         sky_shares(transport, number, escape) if surfaces.world.ndim > 1 else None,
-        tree.areas(base >> 1) * (1.0 - buried) * share * means.opacity(surfaces)[:, 0],
+        tree.areas(base >> 1) * (1.0 - buried) * share * transport.met_share(base) * means.opacity(surfaces)[:, 0],
         buried,
         means,
         means.reflectance(surfaces),

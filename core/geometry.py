@@ -57,6 +57,15 @@ def normalized(vectors: Floats) -> Floats:
     return result
 
 
+def corner_angles(corners: Floats) -> Floats:
+    """Angles at the corners of triangles (t, 3, 3), (t, 3), radians."""
+    along = np.roll(corners, -1, axis=1) - corners
+    back = -np.roll(along, 1, axis=1)
+    across = lengths(np.cross(along, back))
+    result: Floats = np.arctan2(across, np.einsum("tkx,tkx->tk", along, back))
+    return result
+
+
 def edge_lengths(points: Floats, triangles: Ints) -> Floats:
     """Lengths of the edges 0-1, 1-2 and 2-0 of each triangle, (t, 3)."""
     start = np.ascontiguousarray(triangles.T)

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
-from .geometry import lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
+from .geometry import corner_angles, lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
 from .limits import LARGEST_COORDINATE, lamp_warnings, light_warnings, sound_lamp, sound_light
+from .planes import share_planes
 from .scene import Floats, Ints, Lamp, LightLinking, Scene, SurfaceMesh, Texture
 from .textures import joined, mean_colours, with_means
 from .transmittance import Transmittance, of_opaque, transmittance_of
@@ -106,37 +107,63 @@ class Surfaces:
     colour_warnings: tuple[str, ...]
 
     def traced_points(self) -> Floats:
-        """The points as rays are to meet them, (v, 3): solids are smaller by a hair than they are.
+        """The points as rays are to meet them, (v, 3): solids are smaller by a hair, sheets back to back are apart.
 
         Where a cupboard stands against a wall, two faces lie in one plane, and a ray from inside the cupboard met by
-        chance its back or the wall, as if the cupboard were open to the room.
+        chance its back or the wall, as if the cupboard were open to the room. Where rooms of sheets lie beside each
+        other, it met the wall of the one or of the other.
         """
-        chosen = self._of_solids
-        place = self.place_of_point[chosen]
-        cross = triangle_cross(self.points, chosen)
-        outward = np.stack(
-            [
-                np.bincount(place.ravel(), weights=np.repeat(column, 3), minlength=len(self.points))
-                for column in normalized(cross).T
-            ],
-            axis=1,
-        )
-        moved: Floats = self.points - self.hair * normalized(outward)[self.place_of_point]
-        return moved
+        solid = (self.closed & (signed_volumes(self) > 0.0))[self.shell_of_triangle]
+        apart = self._back_to_back()
+        moved = self.points - self.hair * self._way(np.flatnonzero(solid))
+        result: Floats = moved + self._hair_of(self.triangles[apart]) * self._way(np.flatnonzero(apart))
+        return result
+
+    def _way(self, chosen: Ints) -> Floats:
+        """Mean normals of some triangles at their points, (v, 3), of length 1, zero elsewhere.
+
+        By their angles: of a face that is cut into a fan at a corner all parts together count as the face.
+        """
+        corners = self.triangles[chosen]
+        weighted = np.repeat(self.normals[chosen], 3, axis=0) * corner_angles(self.points[corners]).reshape(-1, 1)
+        place = self.place_of_point[corners].ravel()
+        sums = [np.bincount(place, weights=column, minlength=len(self.points)) for column in weighted.T]
+        way: Floats = normalized(np.stack(sums, axis=1))[self.place_of_point]
+        return way
 
     @cached_property
     def hair(self) -> float:
         """How much solids are smaller for rays, scene units."""
+        return self._hair_of(self._of_solids)
+
+    def _hair_of(self, triangles: Ints) -> float:
+        """How much some triangles (k, 3) are moved for rays, scene units."""
         used = self.points[self.triangles.ravel()]
         middle = (used.min(axis=0) + used.max(axis=0)) / 2.0
         # On a wide ground, rays are as fine near its middle as the coordinates there, which are small.
-        return HAIR * 2.0 * float(np.abs(self.points[self._of_solids] - middle).max(initial=0.0))
+        return HAIR * 2.0 * float(np.abs(self.points[triangles] - middle).max(initial=0.0))
 
     @cached_property
     def _of_solids(self) -> Ints:
         """Triangles of what has an inside, (k, 3)."""
         solid = self.closed & (signed_volumes(self) > 0.0)
         return self.triangles[solid[self.shell_of_triangle]]
+
+    def _back_to_back(self) -> NDArray[np.bool_]:
+        """Triangles of sheets in one plane with others, of another sheet, that look the other way, (t,)."""
+        sheets = np.flatnonzero(~self.closed[self.shell_of_triangle])
+        corners, shell = self.points[self.triangles[sheets]], self.shell_of_triangle[sheets]
+        result = np.zeros(len(self.triangles), dtype=bool)
+        result[sheets] = share_planes(self.normals[sheets], corners, shell, self.extent)[1]
+        return result
+
+    def doubled(self) -> NDArray[np.bool_]:
+        """Triangles on a side of which others may lie, (t,): solids bury what they stand on."""
+        shell, places = self.shell_of_triangle, np.sort(self.place_of_point[self.triangles], axis=1)
+        alike, _ = share_planes(self.normals, self.points[self.triangles], shell, self.extent)
+        _, number, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+        result: NDArray[np.bool_] = alike | self._back_to_back() | (count[number.ravel()] > 1)
+        return result
 
     def blockers(self) -> dict[frozenset[int], NDArray[np.bool_]]:
         """The triangles that hide light of some blockers only, (t,), by these."""

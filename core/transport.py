@@ -35,6 +35,9 @@ LARGE_SHARE = 1.0 / 256.0
 """Share of the light emitted by all that makes an element one of the few that send out much of it: how much of that
 leaves an open scene is told by their rows alone."""
 
+PROBES, PROBES_FROM = 16, 8.0
+"""Rays that look whether an element or another in its plane is met, and how far off they start, in `OFFSET`."""
+
 POINTS_OF_A_FACTOR = 4
 """Points of a receiver over which a form factor in closed form is averaged."""
 
@@ -397,6 +400,36 @@ class Transport:
         It costs less than `shares`, and is for the time before any row is lengthened.
         """
         return shares_to(self.tables[0].taken(slice(first_row, last_row)), np.append(wanted, [False, False]))
+
+    def met_share(self, elements: Ints) -> Floats:
+        """Share of elements (m,) that rays from outside meet: less than 1 where something else lies in their plane.
+
+        Of two faces in one place rays meet now the one and now the other, and what both get is there once. What emits
+        is sampled by itself, and lights twice where it is there twice.
+        """
+        share = np.ones(len(elements))
+        doubled = self.surfaces.doubled() & self.surfaces.seen & ~self.surfaces.emission.any(axis=1)
+        asked = np.flatnonzero(doubled[self.tree.triangle[elements >> 1]])
+        points, normals = sample_points(self.surfaces, self.tree, elements[asked], PROBES, self.seed + 61)
+
+        def work(first: int, last: int) -> Floats:
+            axis = normals[first:last].reshape(-1, 3)
+            start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * PROBES_FROM * OFFSET).astype(
+                np.float32
+            )
+            met = self.look(start, -axis.astype(np.float32))[0].astype(np.int64)
+            # What solids bury is no share of what is left.
+            buried = met == BURIED
+            if self.cover is not None:
+                met[~buried] = self.cover.base_of(met[~buried])
+            own = met.reshape(-1, PROBES) == elements[asked[first:last], None]
+            left = PROBES - buried.reshape(-1, PROBES).sum(axis=1)
+            result: Floats = np.where(left > 0, own.sum(axis=1) / np.maximum(left, 1), 1.0)
+            return result
+
+        parts = self.rays.workers.map(work, len(asked), PROBES)
+        share[asked] = np.concatenate([np.zeros(0), *parts])
+        return share
 
     def buried_share(self) -> Floats:
         """Share of each element's rays that started inside a solid, (2 * nodes,); 0 for elements without a row."""

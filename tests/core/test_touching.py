@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Solids that touch walls, floors and each other in one plane, and objects thinner than the faces they stand on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
@@ -10,7 +12,7 @@ from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import HAIR, join
 from radiosity_bake.core.visibility import OFFSET, RayScene
 
-from tests.core.building import DARK, block, flipped
+from tests.core.building import DARK, areas, block, flipped
 from tests.scenes import exact
 
 ROOM = exact.closed_room((2, 2, 2), reflectance=0.5)
@@ -48,6 +50,23 @@ def test_only_solids_are_smaller_and_by_less_than_rays_start_off_their_surface()
     for part in of_mesh[1:3]:
         assert part == pytest.approx(HAIR * surfaces.extent)
     assert HAIR < OFFSET
+
+
+def test_all_faces_of_a_solid_recede_however_many_triangles_meet_in_its_corners():
+    # The top is a fan of forty triangles about one of its corners.
+    solid = block("block", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    rim = [(1.0, k / 20, 1.0) for k in range(21)] + [(1.0 - k / 20, 1.0, 1.0) for k in range(1, 21)]
+    corners = solid.vertices[solid.triangles]
+    kept = solid.triangles[(corners == 0.0).all(axis=1).any(axis=1)]
+    top = [(4, 8 + k, 9 + k) for k in range(40)]
+    east = [(1, 3, 28), *((1, 9 + k, 8 + k) for k in range(20))]
+    north = [(2, 28, 3), *((2, 9 + k, 8 + k) for k in range(20, 40))]
+    fan = surface_mesh("fan", [*solid.vertices, *rim], [*kept, *top, *east, *north], reflectance=0.5)
+    surfaces = join(Scene((ROOM, fan, LAMP), DARK))
+    first = surfaces.first_point_of_mesh[1]
+    moved = (surfaces.traced_points() - surfaces.points)[first + 4]
+    # Those of a cube's corner by the same: a hair along the diagonal.
+    assert moved == pytest.approx(HAIR * surfaces.extent / np.sqrt(3) * np.array([1.0, 1.0, -1.0]), rel=1e-3)
 
 
 def test_a_cupboard_against_a_wall_costs_no_more_than_one_a_step_off():
@@ -133,3 +152,49 @@ def test_more_things_on_a_ground_take_no_more_rays_for_each_vertex():
     few, many = (bake(standing_balls(along, 0.1), DRAFT).report for along in (2, 4))
     assert many["vertices"] > 3 * few["vertices"]
     assert many["rays"] / many["vertices"] <= 1.1 * few["rays"] / few["vertices"]
+
+
+def twice(mesh):
+    """The mesh with each of its triangles there twice."""
+    names = ("triangles", "corner_normals", "reflectance", "emission")
+    return replace(mesh, **{name: np.concatenate([getattr(mesh, name)] * 2) for name in names})
+
+
+FLOOR = exact.rectangle("floor", (0, 0, 0), (2, 0, 0), (0, 2, 0), reflectance=0.5)
+BLOCK = block("block", (0.5, 0.5, 0.0), (1.1, 1.1, 0.8))
+
+
+@pytest.mark.parametrize(
+    "meshes",
+    [
+        (twice(ROOM), LAMP, BLOCK),
+        (ROOM, ROOM, LAMP, BLOCK),
+        (*exact.box_walls((2, 2, 2), reflectance=0.5), FLOOR, LAMP, BLOCK),
+        (*exact.box_walls((2, 2, 2), reflectance=0.5), flipped(FLOOR), LAMP, BLOCK),
+        (ROOM, LAMP, BLOCK, block("other", (0.9, 0.6, 0.0), (1.5, 0.9, 0.8))),
+    ],
+    ids=["faces", "room", "floor", "floor turned over", "blocks as high as each other"],
+)
+def test_what_is_there_twice_is_no_light_unaccounted_for(meshes):
+    report = bake(Scene(tuple(meshes), DARK), DRAFT).report
+    assert abs(report["energy"]["imbalance"]) < 0.02
+    assert not any("unaccounted" in sentence for sentence in report["warnings"])
+
+
+@pytest.mark.parametrize("beyond", [0.0, 0.3], ids=["as large", "larger"])
+def test_rooms_of_sheets_with_walls_in_one_plane_keep_their_own_light(beyond):
+    bright = (
+        *exact.box_walls((1, 1, 1), reflectance=0.8),
+        exact.rectangle("lamp", (0.3, 0.3, 0.95), (0, 0.4, 0), (0.4, 0, 0), emission=5.0),
+    )
+    size = np.array((1.0, 1.0 + 2 * beyond, 1.0 + 2 * beyond))
+    beside = exact.box_walls(size, reflectance=0.1, origin=(1.0, -beyond, -beyond))
+    sizes = BakeSettings(quality="DRAFT", minimum_size=0.1)
+
+    def light(*meshes):
+        found = bake(Scene(meshes, DARK), sizes).meshes[:6]
+        corners = np.concatenate([mesh.vertices[mesh.triangles] for mesh in found])
+        return areas(corners) @ np.concatenate([mesh.irradiance for mesh in found]).mean(axis=(1, 2)) / 6.0
+
+    # A wall that reflects an eighth as much makes the room a sixth darker where rays meet it.
+    assert light(*bright, *beside) == pytest.approx(light(*bright), rel=0.02)
