@@ -237,10 +237,13 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def light_up_first(faces: Faces, share: Floats) -> Lit:
         nonlocal per_receiver
         first = light_up(surfaces, lit, faces, share, gather_at)
-        per_receiver = enough_rays(per_receiver, first.noise(surfaces), len(first.places.points), most_kept)
-        if per_receiver is effort.gather:
-            return first
-        return replace(first, gathered=gather_at(first.places))
+        while True:
+            noise, count = first.noise(surfaces), len(first.places.points)
+            enough = enough_rays(per_receiver, effort.gather.hemisphere, noise, count, most_kept)
+            if enough is per_receiver:
+                return first
+            per_receiver = enough
+            first = replace(first, gathered=gather_at(first.places))
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)

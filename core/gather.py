@@ -35,6 +35,12 @@ cupboard that stands against a wall, many rays seem to: they meet the wall where
 MOST_DOUBLINGS = 4
 """Times that the hemisphere rays are doubled at most."""
 
+NOISY = 2.0**0.25
+"""Times the noise asked for from which on rays are doubled: between none and one time of the slowest fall there is."""
+
+FASTEST_FALL = 0.75
+"""Noise falls as a power of the rays: 1/2 where they were random, this for an even pattern and edges."""
+
 MORE_RECEIVERS = 8
 """Times more receivers than patches have corners that there shall be room for."""
 
@@ -226,13 +232,16 @@ def gather(
     return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, MetPlaces.of(kept, len(scenes)))
 
 
-def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int) -> GatherRays:
+def enough_rays(counts: GatherRays, first: int, noise: float, receivers: int, most_kept: int) -> GatherRays:
     """The same counts, or more hemisphere rays where light comes from few small bright places, so that they are noisy.
 
-    All receivers get as many, as all take the same pattern.
+    All receivers get as many, as all take the same pattern. How fast noise falls depends on how small the places are:
+    it is to be measured again with what this returns.
 
     Parameters
     ----------
+    first : int
+        Hemisphere rays that the quality begins with.
     noise : float
         With these counts, relative to the mean.
     receivers : int
@@ -240,8 +249,12 @@ def enough_rays(counts: GatherRays, noise: float, receivers: int, most_kept: int
     most_kept : int
         As of `gather`; there shall be room for more receivers.
     """
-    doublings = min(round(2.0 * np.log2(max(noise / counts.noise, 1.0))), MOST_DOUBLINGS)
-    while doublings and (counts.hemisphere << doublings) * MORE_RECEIVERS * receivers > most_kept:
+    ratio = noise / counts.noise
+    if ratio <= NOISY:
+        return counts
+    doublings = max(int(np.log2(ratio) / FASTEST_FALL), 1)
+    most = min(first << MOST_DOUBLINGS, most_kept // (MORE_RECEIVERS * receivers))
+    while doublings and counts.hemisphere << doublings > most:
         doublings -= 1
     return replace(counts, hemisphere=counts.hemisphere << doublings) if doublings else counts
 

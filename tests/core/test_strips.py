@@ -63,9 +63,12 @@ def test_noisy_light_gets_more_rays_and_no_more_than_there_is_room_for():
     from radiosity_bake.core.gather import MOST_DOUBLINGS, GatherRays, enough_rays
 
     counts = GatherRays(256, 0.01, 64, 128, 256, 0.01)
-    assert enough_rays(counts, 0.002, 1000, 10**9) is counts
-    assert enough_rays(counts, 0.011, 1000, 10**9) is counts
-    # The error falls as the square root of the rays.
-    assert enough_rays(counts, 0.02, 1000, 10**9).hemisphere == 1024
-    assert enough_rays(counts, 5.0, 1000, 10**9).hemisphere == 256 << MOST_DOUBLINGS
-    assert enough_rays(counts, 5.0, 1000, 8 * 1000 * 600).hemisphere == 512
+    assert enough_rays(counts, 256, 0.002, 1000, 10**9) is counts
+    assert enough_rays(counts, 256, 0.011, 1000, 10**9) is counts
+    assert enough_rays(counts, 256, 0.013, 1000, 10**9).hemisphere == 512
+    # No more than would do if noise fell as fast as it may: three doublings to an eighth to the power of 3/4.
+    assert enough_rays(counts, 256, 0.01 * 2.0**2.3, 1000, 10**9).hemisphere == 256 << 3
+    assert enough_rays(counts, 256, 5.0, 1000, 10**9).hemisphere == 256 << MOST_DOUBLINGS
+    assert enough_rays(counts, 256, 5.0, 1000, 8 * 1000 * 600).hemisphere == 512
+    most = GatherRays(256 << MOST_DOUBLINGS, 0.01, 64, 128, 256, 0.01)
+    assert enough_rays(most, 256, 5.0, 1000, 10**9) is most
