@@ -287,14 +287,10 @@ def direct_on_patches(
         direct.append(at_points.weighted(1.0 / points).renumbered(np.repeat(rows, points), count))
     if len(cover.element):
         at_points = _direct_at(transport, emitters, cover.element, cover.points, cover.normals, report)
-        twins = cover.twin[cover.element]
-        areas = balance.areas[number[cover.element]] + balance.areas[number[twins]]
-        for covered, chosen in ((cover.element, ~cover.covered), (twins, cover.covered)):
-            receiver = np.where(chosen, number[covered][:, None], -1)
-            # What the points get in all is spread over the area that rays stand for, unless few of them say so.
-            part = balance.areas[number[covered]] / np.maximum(areas, np.finfo(np.float64).tiny)
-            part = np.maximum(part, 0.5 * chosen.mean(axis=1))
-            share = chosen / (chosen.shape[1] * part[:, None])
+        # A point belongs to both parts as its rays do, so that the parts get together what the points do.
+        for covered, part in ((cover.element, 1.0 - cover.short), (cover.twin[cover.element], cover.short)):
+            receiver = np.where(part > 0.0, number[covered][:, None], -1)
+            share = part / part.sum(axis=1)[:, None]
             direct.append(at_points.weighted(share.ravel()).renumbered(receiver.ravel(), count))
     return DirectLight.joined(direct)
 

@@ -124,7 +124,8 @@ class Cover:
         Elements that are covered in part; their twins are numbered on from 2 * nodes.
     points, normals : (k, COVER_POINTS, 3) float
         Where they were tested.
-    covered : (k, COVER_POINTS) bool
+    short : (k, COVER_POINTS) float
+        Share of the rays from there that are short: a point belongs to either part by so much.
     first_twin : int
     twin : (2 * nodes,) int32
         -1 for an element without one.
@@ -135,7 +136,7 @@ class Cover:
     element: Ints
     points: Floats
     normals: Floats
-    covered: NDArray[np.bool_]
+    short: Floats
     first_twin: int
     twin: NDArray[np.int32]
     reach: Singles

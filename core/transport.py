@@ -24,9 +24,9 @@ from .surfaces import Surfaces
 from .visibility import OFFSET, RayScene
 from .world import map_cells
 
-COVER_POINTS, COVER_RAYS, COVERED_RAYS = 16, 8, 7
-"""Points of a patch that are tested, rays of each, and how many must be short; beside a wall half of them are, in the
-corner of a room three quarters."""
+COVER_POINTS, COVER_RAYS, LEAST_SHORT = 16, 8, 7 / 8
+"""Points of a patch that are tested, rays of each, and the share that must be short at one of them for the patch to be
+covered in part; beside a wall half of them are, in the corner of a room three quarters."""
 
 LONG_ROW = 4
 """Times more rays that an element is given when most of its first ones started inside a solid."""
@@ -346,24 +346,26 @@ class Transport:
             some.append(table.element[(short > 0.5 / COVER_POINTS) & (short < 1.0 - 0.5 / COVER_POINTS)])
         elements = np.sort(np.concatenate(some))
         points, normals = sample_points(self.surfaces, tree, elements, COVER_POINTS, self.seed + 31)
-        covered = self._covered(elements, points, normals, reach, report)
+        short = self._short(elements, points, normals, reach, report)
+        covered = short >= LEAST_SHORT
         mixed = covered.any(axis=1) & ~covered.all(axis=1)
-        elements, points, normals, covered = elements[mixed], points[mixed], normals[mixed], covered[mixed]
+        elements, points, normals, short = elements[mixed], points[mixed], normals[mixed], short[mixed]
         twin = np.full(2 * len(tree), -1, dtype=np.int32)
         twin[elements] = 2 * len(tree) + np.arange(len(elements))
-        self.cover = Cover(elements, points, normals, covered, 2 * len(tree), twin, reach)
+        self.cover = Cover(elements, points, normals, short, 2 * len(tree), twin, reach)
         for table in self.tables:
             hits = np.maximum(table.hits, 0)
             self.cover.tell_apart(hits, table.distance)
             np.copyto(table.hits, hits, where=table.hits >= 0)
         return self.cover
 
-    def _covered(
+    def _short(
         self, elements: Ints, points: Floats, normals: Floats, reach: Singles, report: Callable[[float], None]
-    ) -> NDArray[np.bool_]:
+    ) -> Floats:
+        """Share of short rays at points of elements, (k, COVER_POINTS)."""
         patterns = Patterns.make(0, COVER_RAYS, self.seed + 32)
 
-        def work(first: int, last: int) -> NDArray[np.bool_]:
+        def work(first: int, last: int) -> Floats:
             axis = normals[first:last].reshape(-1, 3)
             key = (elements[first:last, None] * COVER_POINTS + np.arange(COVER_POINTS)).ravel()
             pattern, angle = patterns.choose(key, self.seed + 33)
@@ -371,10 +373,11 @@ class Transport:
             start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * OFFSET).astype(np.float32)
             found = self.rays.first_hits(np.repeat(start, COVER_RAYS, axis=0), directions)
             short = found.distance.reshape(-1, COVER_POINTS, COVER_RAYS) < reach[elements[first:last]][:, None, None]
-            return short.sum(axis=2) >= COVERED_RAYS
+            result: Floats = short.mean(axis=2)
+            return result
 
         parts = self.rays.workers.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
-        return np.concatenate([np.zeros((0, COVER_POINTS), dtype=bool), *parts])
+        return np.concatenate([np.zeros((0, COVER_POINTS)), *parts])
 
     def is_aside(self) -> NDArray[np.bool_]:
         """Elements that are partly inside a solid or covered, whose light is that of their rest, (2 * nodes,)."""
