@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Write the page and the charts from what was measured.
 
-`python -m bench.publish` writes the published page anew from its own numbers, after a change of its words, and from the
-tables that commands of their own have measured since.
+`python -m bench.publish` writes the published page and its charts anew from their own numbers, after a change of words,
+and from what has been measured since: single scenes, and the tables that have commands of their own.
 """
 
 from __future__ import annotations
@@ -39,16 +39,22 @@ def write_page(document: results.Document, folder: Path) -> list[Path]:
 
 
 def brought_up_to_date(published: results.Document, out: Path) -> results.Document:
-    """Return the published document with those tables of `out` that were measured later."""
+    """Return the published document with those scenes and tables of `out` that were measured later."""
     measured = results.collect(out)
+    scenes = {scene["scene"]: scene for scene in published["scenes"]}
+    for scene in measured["scenes"]:
+        if scene["run"] > scenes.get(scene["scene"], {"run": ""})["run"]:
+            scenes[scene["scene"]] = scene
     newer = {
         name: measured[name]
         for name in ("paper_table", "scaling", "profile")
         if measured[name] and measured[name]["run"] > (published.get(name) or {"run": ""})["run"]
     }
-    return {**published, **newer}
+    return {**published, **newer, "scenes": list(scenes.values())}
 
 
 if __name__ == "__main__":
-    for path in write_page(brought_up_to_date(results.read(DOCS / "performance.json") or {}, OUT), DOCS):
+    known = results.read(DOCS / "performance.json") or results.collect(OUT)
+    document = brought_up_to_date(known, OUT)
+    for path in [*chart.draw_all(document, DOCS / "images", kinds=("png",)), *write_page(document, DOCS)]:
         print(path)

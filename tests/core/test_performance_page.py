@@ -10,7 +10,7 @@ import pytest
 
 from bench.convergence import cost_at, improving
 from bench.page import page
-from bench.publish import DOCS
+from bench.publish import DOCS, brought_up_to_date
 from bench.results import collect
 
 
@@ -168,3 +168,18 @@ def test_an_exact_bake_does_not_break_the_page(tmp_path):
 def test_the_published_page_is_what_its_numbers_give():
     document = json.loads((DOCS / "performance.json").read_text(encoding="utf-8"))
     assert (DOCS / "performance.md").read_text(encoding="utf-8") == page(document)
+
+
+def test_a_scene_measured_later_takes_the_place_of_the_published_one_and_no_other(tmp_path):
+    published = {
+        "scenes": [{"scene": "cornell_box", "run": "2"}, {"scene": "statue", "run": "2"}],
+        "profile": {"run": "2"},
+    }
+    (tmp_path / "bench").mkdir()
+    for name, run in (("cornell_box", "3"), ("statue", "1")):
+        text = json.dumps({"scene": name, "run": run, "results": []})
+        (tmp_path / "bench" / f"{name}.json").write_text(text, encoding="utf-8")
+    (tmp_path / "profile.json").write_text(json.dumps({"run": "1"}), encoding="utf-8")
+    together = brought_up_to_date(published, tmp_path)
+    assert [(scene["scene"], scene["run"]) for scene in together["scenes"]] == [("cornell_box", "3"), ("statue", "2")]
+    assert together["profile"] == {"run": "2"}
