@@ -35,11 +35,11 @@ from .stopwatch import Cost, timed_once
 
 # Minimum sizes in metres; the paper's are in units of its own. Uniform subdivision has about as many fragments at them
 # as it had there: 456, 1788, 6396 and 25,584; 4504, 6568, 12,484 and 38,032; 8316, 10,008, 14,940 and 41,424. Walls of
-# one size are split together, so there is nothing between 6,300 and 11,300 in scene 3.
+# one size are split together, so there is nothing between 5,100 and 8,300, 8,700 and 13,700, or 35,000 and 57,000.
 SIZES = {
     "paper_scene_1": (0.68, 0.34, 0.17, 0.085),
-    "paper_scene_2": (0.34, 0.3, 0.18, 0.09),
-    "paper_scene_3": (0.3, 0.2, 0.17, 0.09),
+    "paper_scene_2": (0.2, 0.175, 0.15, 0.08),
+    "paper_scene_3": (0.175, 0.16, 0.13, 0.08),
 }
 OTHER_SIZES = (0.2, 0.1, 0.05, 0.025)
 
