@@ -25,9 +25,8 @@ from radiosity_bake.core.bake import bake
 from radiosity_bake.core.settings import QUALITIES, BakeSettings
 
 from .machine import OUT, write_json
+from .methods import BENCH_SCENES
 from .scenes import SCENES
-
-DEFAULT_SCENES = ("cornell_box", "furnished_room")
 
 RAY_LIBRARY = "ray library"
 
@@ -99,7 +98,7 @@ def by_module(stats: dict[Function, Any]) -> dict[str, float]:
     return dict(spent)
 
 
-def write(scenes: Sequence[str] = DEFAULT_SCENES, quality: str = "GOOD") -> None:
+def write(scenes: Sequence[str] = BENCH_SCENES, quality: str = "GOOD") -> None:
     """Profile, print and write."""
     rows = []
     for name in scenes:
@@ -113,10 +112,12 @@ def write(scenes: Sequence[str] = DEFAULT_SCENES, quality: str = "GOOD") -> None
 def main() -> None:
     """Read what is asked for, and do it."""
     parser = argparse.ArgumentParser(prog="python -m bench.profile", description=__doc__.splitlines()[0])
-    parser.add_argument("--scene", action="append", choices=sorted(SCENES), help="default: Cornell box, furnished room")
+    parser.add_argument(
+        "--scene", action="append", choices=sorted(SCENES), help="default: those of the performance page"
+    )
     parser.add_argument("--quality", choices=QUALITIES, default="GOOD")
     asked = parser.parse_args()
-    write(asked.scene or DEFAULT_SCENES, asked.quality)
+    write(asked.scene or BENCH_SCENES, asked.quality)
 
 
 if __name__ == "__main__":

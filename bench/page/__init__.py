@@ -9,8 +9,9 @@ from .equal_error import equal_error, vertices
 from .everything import everything
 from .form_factors import form_factors
 from .goals import goals
+from .growth import growth
 from .introduction import introduction
-from .own_bakes import growth, own_bakes
+from .own_bakes import own_bakes
 from .paper_table import paper_table
 from .profile import profile
 from .scaling import scaling

@@ -20,9 +20,9 @@ from ..methods import (
 )
 from ..results import Document, of_method, own_bake, ray_share, title
 from .equal_error import COMPARED_QUALITIES, faster_by_both, fewer_vertices
+from .growth import exponent, finer_and_finer
 from .limits import limits
 from .markdown import Lines, paragraph, percent, table, times
-from .scaling import exponents
 
 
 def goals(document: Document) -> Lines:
@@ -59,6 +59,7 @@ def goals(document: Document) -> Lines:
     rows.append(
         goal_row(f"and no more than {high:g} times", estimates, lambda x: x <= high, "{:.2f} times".format, max)
     )
+    rows += growth_rows(document)
     rows += size_rows(document.get("scaling") or {})
     return [
         "## Goals",
@@ -91,14 +92,23 @@ def speed_rows(scenes: Sequence[Document]) -> list[tuple[str, str, str]]:
     return rows
 
 
-def size_rows(scaling: Document) -> list[tuple[str, str, str]]:
-    """Return the goals for large scenes, as far as they were measured."""
-    rows = []
-    patches, dense = scaling.get("patches") or [], scaling.get("dense")
+def growth_rows(document: Document) -> list[tuple[str, str, str]]:
+    """Return the goal of how time grows with patches, over every range that was measured."""
+    ranges = dict(finer_and_finer(document))
+    patches = (document.get("scaling") or {}).get("patches") or []
     if len(patches) > 1:
-        name = f"time that grows no faster than patches, to {patches[-1]['patches']:,} of them"
-        power = {"corridor": exponents(patches)[0]}
-        rows.append(goal_row(name, power, lambda x: x <= GROWTH, "to the power of {:.2f}".format, max))
+        ranges[f"Corridor, to {patches[-1]['patches']:,} of them"] = patches
+    if not ranges:
+        return []
+    powers = {name: power for name, rows in ranges.items() if (power := exponent(rows[0], rows[-1])) is not None}
+    name = "time that grows no faster than patches"
+    return [goal_row(name, powers, lambda x: x <= GROWTH, "to the power of {:.2f}".format, max)]
+
+
+def size_rows(scaling: Document) -> list[tuple[str, str, str]]:
+    """Return the goals for a dense mesh, as far as they were measured."""
+    rows = []
+    dense = scaling.get("dense")
     if dense:
         whole = dense["operator"]
         for name, value, most, unit in (

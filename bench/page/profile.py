@@ -16,7 +16,7 @@ MUCH = 0.15
 
 REASONS = {
     "direct": "direct light of few emitters: their exact form factors, and the points that shadow rays end at",
-    "many_lights": "direct light of many emitters, here the faces of a round lamp: what each would send to each "
+    "many_lights": "direct light of many emitters, as the faces of a round lamp are: what each would send to each "
     "vertex, so that its shadow rays go where the light comes from",
     "gather": "the rays of the gather, made and summed",
 }

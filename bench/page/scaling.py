@@ -4,20 +4,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-
 from ..results import Document, Entry
+from .growth import exponent
 from .markdown import Lines, paragraph, seconds, table
-
-
-def exponents(rows: Sequence[Entry]) -> tuple[float, float]:
-    """Return the powers of the patches as which processor time grows, over the whole range and in the last step."""
-
-    def exponent(a: Entry, b: Entry) -> float:
-        return math.log(b["processor_seconds"] / a["processor_seconds"]) / math.log(b["patches"] / a["patches"])
-
-    return exponent(rows[0], rows[-1]), exponent(rows[-2], rows[-1])
 
 
 def scaling(measured: Document) -> Lines:
@@ -25,7 +14,7 @@ def scaling(measured: Document) -> Lines:
     rows = measured.get("patches") or []
     lines: Lines = []
     if len(rows) > 1:
-        whole, last = exponents(rows)
+        whole, last = exponent(rows[0], rows[-1]), exponent(rows[-2], rows[-1])
         busy = max(row["others"] for row in rows)
         lines += [
             "### To 300,000 patches",

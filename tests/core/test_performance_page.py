@@ -10,6 +10,8 @@ import pytest
 
 from bench.convergence import cost_at, improving
 from bench.page import page
+from bench.page.profile import MUCH, REASONS
+from bench.profile import RAY_LIBRARY
 from bench.publish import DOCS, brought_up_to_date
 from bench.results import collect
 
@@ -143,7 +145,7 @@ def test_the_page_tells_how_time_grows_and_what_a_million_triangles_take(tmp_pat
     assert "grows as patches to the power of 1.00 over the whole range, of 1.30 in the last step" in text
     assert "The statue made of 1,001,000 triangles" in text
     assert (
-        "| time that grows no faster than patches, to 100,000 of them | to the power of 1.00 (Corridor) | yes |" in text
+        "| time that grows no faster than patches | to the power of 1.00 (Corridor, to 100,000 of them) | yes |" in text
     )
     assert "| 1,001,000 triangles below 4 GB | 3.9 GB (Statue) | yes |" in text
     assert "| 1,001,000 triangles in at most 10 minutes | 5.0 minutes (Statue) | yes |" in text
@@ -183,3 +185,20 @@ def test_a_scene_measured_later_takes_the_place_of_the_published_one_and_no_othe
     together = brought_up_to_date(published, tmp_path)
     assert [(scene["scene"], scene["run"]) for scene in together["scenes"]] == [("cornell_box", "3"), ("statue", "2")]
     assert together["profile"] == {"run": "2"}
+
+
+def test_a_method_whose_time_grows_faster_than_its_patches_misses_the_goal(tmp_path):
+    def uniform(patches: int, seconds: float) -> dict:
+        found = entry("Radiosity Bake, uniform", f"n = {1 / patches} m", seconds, 0.02)
+        return {**found, "patches": patches, "processor_seconds": seconds}
+
+    text = page(measured(tmp_path, uniform(1000, 1.0), uniform(10_000, 20.0)))
+    assert "| time that grows no faster than patches | to the power of 1.30 (Cornell box, uniform) | **no** |" in text
+    text = page(measured(tmp_path, uniform(1000, 1.0), uniform(10_000, 8.0)))
+    assert "| time that grows no faster than patches | to the power of 0.90 (Cornell box, uniform) | yes |" in text
+
+
+def test_the_published_page_explains_whatever_takes_much_of_the_time_and_is_no_ray():
+    rows = json.loads((DOCS / "performance.json").read_text(encoding="utf-8"))["profile"]["scenes"]
+    large = {module for row in rows for module, share in row["shares"].items() if share >= MUCH}
+    assert large <= {RAY_LIBRARY, *REASONS}
