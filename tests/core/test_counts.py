@@ -43,6 +43,21 @@ def block_under_the_sky() -> Scene:
     return Scene((floor, block), np.ones(3))
 
 
+def room_lit_from_many_faces() -> Scene:
+    """The room with a glowing ball of 320 faces in place of its lamp: what many emitters cost."""
+    room = room_with_block()
+    vertices, triangles = exact.icosphere(2)
+    ball = surface_mesh("lamp", 0.15 * vertices + (1.3, 0.7, 1.5), triangles, emission=exact.rgb(20.0))
+    return Scene((*(mesh for mesh in room.meshes if mesh.name != "lamp"), ball), room.world)
+
+
+def room_lit_from_below_its_ceiling() -> Scene:
+    """The room with a lamp that shines up, close under the ceiling: a small bright spot lights all else."""
+    room = room_with_block()
+    up = exact.rectangle("lamp", (0.9, 0.9, 1.9), (0.2, 0, 0), (0, 0.2, 0), emission=20.0)
+    return Scene((*(mesh for mesh in room.meshes if mesh.name != "lamp"), up), room.world)
+
+
 CASES: dict[str, tuple[Callable[[], Scene], BakeSettings]] = {
     "Cornell box, draft": (cornell_box, BakeSettings(quality="DRAFT")),
     "Cornell box, good": (cornell_box, BakeSettings(quality="GOOD")),
@@ -50,6 +65,8 @@ CASES: dict[str, tuple[Callable[[], Scene], BakeSettings]] = {
     "Cornell box, draft by the paper's rule": (cornell_box, BakeSettings(quality="DRAFT", minimum_size=0.05)),
     "Cornell box, draft, uniform": (cornell_box, BakeSettings(quality="DRAFT", minimum_size=0.05, method="UNIFORM")),
     "room with a ball, draft": (room_with_ball, BakeSettings(quality="DRAFT")),
+    "room lit from many faces, draft": (room_lit_from_many_faces, BakeSettings(quality="DRAFT")),
+    "room lit from below its ceiling, draft": (room_lit_from_below_its_ceiling, BakeSettings(quality="DRAFT")),
     "block under the sky, draft": (block_under_the_sky, BakeSettings(quality="DRAFT")),
 }
 

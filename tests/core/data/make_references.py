@@ -21,7 +21,7 @@ SAMPLES = 16384
 EVERY = 4
 """Of the benchmark's probes, one in so many is kept: enough to know an error to a fifth of itself."""
 
-SCENES = ("cornell_box", "corridor", "furnished_room", "paper_scene_1")
+SCENES = ("cornell_box", "corridor", "furnished_room", "paper_scene_1", "pillar_hall", "statue")
 
 
 def main(names: list[str]) -> None:
@@ -48,7 +48,7 @@ def main(names: list[str]) -> None:
         np.savez_compressed(
             FOLDER / f"reference_{name}.npz",
             mesh=probes.mesh[rows].astype(np.uint8),
-            triangle=probes.triangle[rows].astype(np.uint16),
+            triangle=probes.triangle[rows].astype(np.uint32),
             position=probes.position[rows].astype(np.float32),
             irradiance=truth.irradiance[rows].astype(np.float32),
             variance=np.float32((truth.standard_error[rows] ** 2).mean()),
