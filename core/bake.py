@@ -35,7 +35,7 @@ from .lighting import (
     result_of,
 )
 from .lit import Lit
-from .patches import clustered_patches, coarse_count
+from .patches import PatchTree, clustered_patches, coarse_count
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
@@ -43,7 +43,7 @@ from .relight import KeptTransport, keep, parts_of, shapes_of
 from .result import BakeResult
 from .rows import BYTES_PER_RAY, COVER_GAP
 from .scene import Floats, Ints, Scene
-from .settings import BakeSettings
+from .settings import LARGEST, BakeSettings
 from .subdivision import Faces, input_faces
 from .surfaces import Surfaces, join
 from .transport import Transport
@@ -129,6 +129,9 @@ BYTES_PER_PLACE = 4
 
 RAYS_TO_FIND_CUTS = 16
 """Rays that tell whether a place on an edge is hidden."""
+
+LEAST_COARSENING, MOST_COARSENING = 1.25, 4.0
+"""Times larger that patches are made from one try to the next while there are more than the patch limit."""
 
 ROUND_SHARE = 0.15
 """Share of the remaining progress that one batch of traced rows stands for."""
@@ -318,6 +321,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     }
     taken += BYTES_PER_TRIANGLE * len(surfaces.triangles) + BYTES_PER_VERTEX * len(shown.places.points)
     warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory)
+    warnings += patch_limit_warnings(rounds, len(tree.patches()), settings.patch_limit)
     story = Story(settings, counts, warnings)
     kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, checks, story)
     parts = partial(parts_of, kept, scene, rays.workers)
@@ -377,13 +381,12 @@ def subdivided(
     takes part in the exchange of light is where surfaces see each other, whatever lies around them. How large that is
     even a few patches tell.
     """
-    area = float(surfaces.areas.sum())
+    area, most_patches = float(surfaces.areas.sum()), settings.patch_limit or LARGEST
     while True:
         clock.start("Coarse patches", 0.02, 0.03)
         smallest, _ = minimum_sizes(surfaces, settings, effort, area)
         least = min(smallest, automatic_size(area, effort))
-        lines = find_crossings(surfaces, rays, lit, least)
-        tree = clustered_patches(surfaces, least, lines)
+        tree = coarsest_that_fits(surfaces, rays, lit, least, most_patches)
         per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
         transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
         clock.start("Form factors", 0.03, 0.4)
@@ -396,6 +399,22 @@ def subdivided(
         if coarse_count(surfaces, automatic_size(seeing, effort)) > MOST_COARSE * effort.patches:
             return transport, rounds, area
         area = seeing
+
+
+def coarsest_that_fits(
+    surfaces: Surfaces, rays: RayScene, lit: NDArray[np.bool_], least: float, most: int
+) -> PatchTree:
+    """The coarse patches for patches of a size `least`, scene units, or so much larger that there are `most` of them.
+
+    There may be more in the end, of what is of many colours, bent or in many pieces, and cannot be joined.
+    """
+    largest = float(np.ptp(surfaces.points, axis=0).max(initial=0.0))
+    while True:
+        tree = clustered_patches(surfaces, least, find_crossings(surfaces, rays, lit, least))
+        count = len(tree.patches())
+        if count <= most or least > largest:
+            return tree
+        least *= float(np.clip(np.sqrt(count / most), LEAST_COARSENING, MOST_COARSENING))
 
 
 def rays_that_fit(wanted: int, most: int, patches: int) -> int:
@@ -417,6 +436,7 @@ def subdivide(
     tree, surfaces = transport.tree, transport.surfaces
 
     wanted = surfaces.baked | surfaces.emission.any(axis=1)
+    most = settings.patch_limit or LARGEST
 
     def seeds() -> Ints:
         patches = tree.patches()
@@ -427,8 +447,8 @@ def subdivide(
 
     report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.patches()):,} patches, {transport.rays.rays:,} rays")
     if settings.method == "ADAPTIVE":
-        return refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report)
-    return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report)
+        return refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report, most)
+    return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report, most)
 
 
 def limit_warnings(
@@ -450,3 +470,17 @@ def limit_warnings(
             "which is the least"
         )
     return tuple(warnings)
+
+
+def patch_limit_warnings(rounds: refinement.Refinement, patches: int, limit: int) -> tuple[str, ...]:
+    """A sentence where so many patches were too many for the limit (0: none), or where it ended the subdivision."""
+    if limit and patches > limit:
+        return (
+            f"The scene is {patches:,} patches at least, more than the patch limit of {limit:,}: faces of different "
+            "colours, directions or objects are not joined",
+        )
+    if rounds.ended == refinement.PATCHES_MET:
+        return (
+            f"The patch limit ended the subdivision early, with {patches:,} patches; raise it for more exact light",
+        )
+    return ()

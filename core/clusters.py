@@ -75,6 +75,13 @@ class Clusters:
         nothing = np.zeros(0, dtype=np.int64)
         return Clusters(nothing, nothing, nothing, nothing, np.zeros(1))
 
+    def parts(self) -> Ints:
+        """How many clusters and single members take the place of each cluster when it is opened, (c,)."""
+        inner = np.flatnonzero(self.parent >= 0)
+        # Each cluster in it takes the place of its members.
+        saved = np.bincount(self.parent[inner], weights=self.count[inner] - 1, minlength=len(self))
+        return self.count - saved.astype(np.int64)
+
     def areas(self) -> Floats:
         """Area of each cluster, (c,), scene units squared."""
         areas: Floats = self.area_before[self.first + self.count] - self.area_before[self.first]

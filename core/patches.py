@@ -216,6 +216,12 @@ class PatchTree:
         self._stand(np.flatnonzero(np.isin(self.clusters.parent, opened)))
         self.split(patches[~clustered])
 
+    def parts(self, patches: Ints) -> Ints:
+        """How many patches take the place of each when it is divided, (m,)."""
+        parts, clustered = np.full(len(patches), 4), self.is_cluster(patches)
+        parts[clustered] = self.clusters.parts()[patches[clustered] - self.first_cluster]
+        return parts
+
     def _stand(self, clusters: Ints) -> None:
         """Make clusters the patches of their members."""
         node = self.first_cluster + clusters

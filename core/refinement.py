@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .patches import PatchTree
 from .rows import Shares
 from .scene import Floats, Ints
+from .settings import LARGEST
 from .transport import Transport
 
 THRESHOLD_MET = "every form factor is below the threshold"
@@ -26,6 +27,7 @@ LEAST_AREA = 0.5
 times as long as wide. Right isosceles ones have twice as much."""
 
 LIMIT_MET = "the memory limit allows no more fragments"
+PATCHES_MET = "the patch limit allows no more fragments"
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,7 @@ def refine(
     smallest: float,
     most_rays: int,
     report: Callable[[float], None] = lambda share: None,
+    most_patches: int = LARGEST,
 ) -> Refinement:
     """Split fragments by the form factors to them until all are small or weakly coupled.
 
@@ -105,8 +108,10 @@ def refine(
         The minimum size n, scene units.
     most_rays : int
         Rays that memory allows.
+    most_patches : int
+        Fragments that there may be. Where not all can be split that should be, those are that receive the most.
     """
-    tree, full = transport.tree, False
+    tree, ended = transport.tree, ""
     rounds: list[Round] = []
     large = fresh = _large(tree, smallest)
     unmet = 0
@@ -124,8 +129,13 @@ def refine(
             pairs = transport.shares_to(np.repeat(fresh, 2))
         highest = _highest_factors(transport, pairs, threshold)
         flagged = np.flatnonzero(highest > threshold)
-        full |= len(flagged) > 0 and _rays_after(transport, flagged, unmet) > most_rays
-        if full:
+        if not ended:
+            fitting = _those_that_fit(tree, flagged, highest, most_patches - fragments)
+            ended = PATCHES_MET if len(fitting) < len(flagged) else ""
+            flagged = fitting
+            if len(flagged) and _rays_after(transport, flagged, unmet) > most_rays:
+                ended, flagged = LIMIT_MET, flagged[:0]
+        else:
             flagged = flagged[:0]
         moved = 0
         if len(flagged):
@@ -134,10 +144,23 @@ def refine(
         rays, largest = transport.rays.rays - rays_before, float(highest.max(initial=0.0))
         rounds.append(Round(fragments, rows, rays, len(flagged), moved, largest))
         if trace and len(flagged) == 0:
-            return Refinement(tuple(rounds), LIMIT_MET if full else _why_ended(transport, threshold))
+            return Refinement(tuple(rounds), ended or _why_ended(transport, threshold))
         # The rays that there are have told all they can of the patches from before.
         before, large = np.append(large, np.zeros(len(tree) - len(large), dtype=bool)), _large(tree, smallest)
         fresh = large & ~before
+
+
+def _those_that_fit(tree: PatchTree, nodes: Ints, strength: Floats, room: int) -> Ints:
+    """The strongest of `nodes` (m,) that may be divided where there is room for so many more patches.
+
+    Parameters
+    ----------
+    strength : (nodes,) float
+        Of every node of the tree.
+    """
+    strongest_first = nodes[np.argsort(-strength[nodes], kind="stable")]
+    made = np.cumsum(tree.parts(strongest_first) - 1)
+    return np.sort(strongest_first[: np.searchsorted(made, room, side="right")])
 
 
 def _untraced(transport: Transport) -> NDArray[np.bool_]:
@@ -158,6 +181,7 @@ def refine_uniformly(
     smallest: float,
     most_rays: int,
     report: Callable[[float], None] = lambda share: None,
+    most_patches: int = LARGEST,
 ) -> Refinement:
     """Split every leaf of size m = 2n or more, down to the minimum size n, then trace."""
     tree, rounds, ended = transport.tree, [], UNIFORM_MET
@@ -166,8 +190,9 @@ def refine_uniformly(
         large = patches[_may_be_split(tree, patches, smallest)]
         if len(large) == 0:
             break
-        if (len(patches) + 3 * len(large)) * transport.rays_per_row > most_rays:
-            ended = LIMIT_MET
+        count = len(patches) + int((tree.parts(large) - 1).sum())
+        if count > most_patches or count * transport.rays_per_row > most_rays:
+            ended = PATCHES_MET if count > most_patches else LIMIT_MET
             break
         rounds.append(Round(len(patches), 0, 0, len(large), 0, 0.0))
         tree.divide(large)

@@ -51,6 +51,10 @@ class BakeSettings:
     memory_limit : int
         What a bake may take beside the scene itself, in MiB; a small one gives fewer patches, vertices and rays, and
         a warning.
+    patch_limit : int
+        Patches that may exchange light, at most; 0 is no limit. Those that receive least of the others' light stay
+        coarse, and triangles are clustered more coarsely where there are too many to begin with. Vertices are added
+        where the light on the faces asks for it, whatever the patches.
     keep_transport : bool
         Whether the result holds what the rays met, so that it can be lit again; that, too, stays below the limit.
     light : str
@@ -78,6 +82,7 @@ class BakeSettings:
     seed: int = 0
     threads: int = 0
     memory_limit: int = 2048
+    patch_limit: int = 0
     keep_transport: bool = True
     light: str = "ALL"
     light_groups: bool = False
@@ -119,3 +124,5 @@ class BakeSettings:
             raise SettingsError(f"Threads is {self.threads}; choose 0 for all cores, or more")
         if not 64 <= self.memory_limit <= LARGEST:
             raise SettingsError(f"Memory limit is {self.memory_limit} MiB; choose 64 MiB or more")
+        if not 0 <= self.patch_limit <= LARGEST:
+            raise SettingsError(f"Patch limit is {self.patch_limit}; choose 0 for none, or more")

@@ -140,6 +140,7 @@ def _parser() -> argparse.ArgumentParser:
     how.add_argument("--seed", type=int, help="pattern of the remaining noise")
     how.add_argument("--threads", type=int, help="cores that trace rays; 0: all")
     how.add_argument("--memory-limit", type=int, metavar="MIB", help="memory that the rays may take")
+    how.add_argument("--patch-limit", type=int, metavar="N", help="patches that exchange light, at most; 0: no limit")
     return parser
 
 
@@ -222,6 +223,7 @@ def _settings(options: argparse.Namespace, scene: bpy.types.Scene) -> BakeSettin
         "seed": options.seed,
         "threads": options.threads,
         "memory_limit": options.memory_limit,
+        "patch_limit": options.patch_limit,
         "keep_transport": None,
         "light": options.light,
         "light_groups": options.light_groups,

@@ -163,6 +163,17 @@ class RadiositySettings(bpy.types.PropertyGroup):
         soft_max=65536,
         options=set(),
     )
+    patch_limit: bpy.props.IntProperty(
+        name="Patch Limit",
+        description=(
+            "Patches that may exchange light; 0 is no limit. What receives least of the light stays coarse, dense meshes "
+            "are clustered more coarsely, and a warning says so. Vertices are added where shadows need them all the same"
+        ),
+        default=DEFAULTS.patch_limit,
+        min=0,
+        soft_max=1_000_000,
+        options=set(),
+    )
     keep_transport: bpy.props.BoolProperty(
         name="Keep for Relighting",
         description=(
@@ -266,6 +277,7 @@ def bake_settings(properties: RadiositySettings) -> BakeSettings:
         seed=properties.seed,
         threads=properties.threads,
         memory_limit=properties.memory_limit,
+        patch_limit=properties.patch_limit,
         keep_transport=properties.keep_transport,
         light=properties.light,
         light_groups=properties.light_groups,

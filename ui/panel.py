@@ -65,7 +65,7 @@ class VIEW3D_PT_radiosity_sampling(_InSidebar, bpy.types.Panel):
 
     def draw(self, context):
         """Draw the panel."""
-        _draw_settings(self.layout, context, ("seed", "threads", "memory_limit", "keep_transport"))
+        _draw_settings(self.layout, context, ("seed", "threads", "memory_limit", "patch_limit", "keep_transport"))
 
 
 class VIEW3D_PT_radiosity_output(_InSidebar, bpy.types.Panel):

@@ -77,11 +77,11 @@ def test_only_the_objects_asked_for_are_baked(room):
 def test_settings_come_from_the_options_and_else_from_the_file(room, quick_bake):
     bpy.context.scene.radiosity.seed = 11
     options = "--output b.blend --threshold 0.05 --minimum-size 0.1 --quality HIGH --method UNIFORM --bake-to ORIGINAL"
-    assert main([*options.split(), "--threads", "1", "--memory-limit", "256"]) == 0
+    assert main([*options.split(), "--threads", "1", "--memory-limit", "256", "--patch-limit", "999"]) == 0
     ((_, settings),) = quick_bake
     assert (settings.threshold, settings.minimum_size, settings.seed) == (0.05, 0.1, 11)
     assert (settings.quality, settings.method, settings.output) == ("HIGH", "UNIFORM", "ORIGINAL")
-    assert (settings.threads, settings.memory_limit) == (1, 256)
+    assert (settings.threads, settings.memory_limit, settings.patch_limit) == (1, 256, 999)
 
 
 @pytest.mark.usefixtures("quick_bake")

@@ -40,7 +40,8 @@ def test_every_setting_of_core_can_be_set_in_the_scene():
     properties.threshold, properties.minimum_size = 0.05, 0.125
     properties.method, properties.quality, properties.output = "UNIFORM", "HIGH", "ORIGINAL"
     properties.seed, properties.threads, properties.memory_limit = 7, 2, 512
-    expected = BakeSettings(0.05, 0.125, "UNIFORM", "HIGH", "ORIGINAL", 7, 2, 512)
+    properties.patch_limit = 999
+    expected = BakeSettings(0.05, 0.125, "UNIFORM", "HIGH", "ORIGINAL", 7, 2, 512, 999)
     assert bake_settings(properties) == expected
 
 

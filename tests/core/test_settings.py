@@ -52,6 +52,7 @@ def test_settings_cannot_be_changed_once_made():
         ({"seed": -1}, ("Seed", "choose 0 to")),
         ({"threads": -2}, ("Threads", "0 for all cores")),
         ({"memory_limit": 1}, ("Memory limit", "64 MiB or more")),
+        ({"patch_limit": -1}, ("Patch limit", "0 for none")),
     ],
 )
 def test_a_value_out_of_range_is_refused_with_what_to_do(values, words):
