@@ -91,6 +91,12 @@ BYTES_PER_VERTEX = 4096
 BYTES_PER_TRIANGLE = 600
 """Of the scene, in the ray library too."""
 
+WITHIN = 1.1
+"""Share of the memory limit that a bake may take without a word."""
+
+LEAST_RAYS_SHARE = 0.25
+"""Share of the memory that traced rays may take in any case: else what the scene's own vertices leave of it."""
+
 LEAST_VERTICES_SHARE = 0.25
 """Share of the memory that vertices may take in any case: else what rays and cells leave of it."""
 
@@ -195,7 +201,13 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
 
     walked = rays.rays
     memory = settings.memory_limit * 2**20
-    most_rays = memory // (BYTES_PER_RAY * WORKING_COPIES)
+    per_vertex = BYTES_PER_VERTEX + BYTES_PER_PLACE * effort.gather.hemisphere
+    # What sorting takes is given back, but not all of it can be used again: the scene's own vertices need theirs beside
+    # it, and about each patch there is one more.
+    own = per_vertex * len(np.unique(surfaces.triangles[surfaces.baked]))
+    for_rays = max(memory - own, int(LEAST_RAYS_SHARE * memory))
+    with_vertices = per_vertex // effort.rays_per_patch if settings.output == "REFINED" else 0
+    most_rays = for_rays // (BYTES_PER_RAY * WORKING_COPIES + with_vertices)
     transport, rounds, area = subdivided(surfaces, rays, lit, settings, effort, most_rays, clock)
     tree, per_row = transport.tree, transport.rays_per_row
     smallest, finest = minimum_sizes(surfaces, settings, effort, area)
@@ -229,7 +241,6 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
     most_kept = memory // (2 * BYTES_PER_PLACE)
     taken = BYTES_OF_BATCHES + BYTES_PER_SORTED_RAY * transport.kept_rays() + BYTES_PER_CELL * len(cells.node)
-    per_vertex = BYTES_PER_VERTEX + BYTES_PER_PLACE * effort.gather.hemisphere
     most_vertices = max(memory - taken, int(LEAST_VERTICES_SHARE * memory)) // per_vertex
 
     per_receiver = effort.gather
@@ -319,7 +330,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
     }
-    taken += BYTES_PER_TRIANGLE * len(surfaces.triangles) + BYTES_PER_VERTEX * len(shown.places.points)
+    per_vertex = BYTES_PER_VERTEX + BYTES_PER_PLACE * shown.gathered.places.rays
+    taken += BYTES_PER_TRIANGLE * len(surfaces.triangles) + per_vertex * len(shown.places.points)
     warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory)
     warnings += patch_limit_warnings(rounds, len(tree.patches()), settings.patch_limit)
     story = Story(settings, counts, warnings)
@@ -464,7 +476,7 @@ def limit_warnings(
         )
     if crowded:
         warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")
-    if taken > memory:
+    if taken > WITHIN * memory:
         warnings.append(
             f"The scene itself is larger than the memory limit: its bake took about {taken / 2**20:,.0f} MiB, "
             "which is the least"

@@ -31,6 +31,9 @@ SEARCHES, ROUGH_SEARCHES = 3, 2
 PLACES_FOR_FEET = 32
 """Places of a face that are asked for a foot between its corners."""
 
+FACES_FOR_FEET = 512
+"""Faces whose places are made at once: a few megabytes of them."""
+
 BEFORE_CUT = 0.75
 """Share of the way from the seen end to the cut at which light is gathered, to be drawn on in a straight line: right at
 the foot of an object is a contact shadow that is often narrower than the face, and would darken all of it."""
@@ -257,9 +260,13 @@ def faces_with_feet(faces: Faces, places: Receivers, among: Ints, is_hidden: IsH
     """Those of the faces `among` that hide some place between their corners: the foot of a leg stands on them."""
     weights = triangle_weights(sequence(0, PLACES_FOR_FEET, 2))
     shares = np.concatenate([1.0 - weights.sum(axis=1, keepdims=True), weights], axis=1)
-    face = np.repeat(among, len(shares))
-    inside = _within(faces, face, places, places.of_corner[face], np.tile(shares, (len(among), 1)))
-    return among[is_hidden(inside).reshape(-1, len(shares)).any(axis=1)]
+    found = [np.zeros(0, dtype=np.int64)]
+    for first in range(0, len(among), FACES_FOR_FEET):
+        some = among[first : first + FACES_FOR_FEET]
+        face = np.repeat(some, len(shares))
+        inside = _within(faces, face, places, places.of_corner[face], np.tile(shares, (len(some), 1)))
+        found.append(some[is_hidden(inside).reshape(-1, len(shares)).any(axis=1)])
+    return np.concatenate(found)
 
 
 def _cut_weights(faces: Faces, face: Ints, edge: Ints, own: Ints, cuts: CutEdges) -> Floats:

@@ -45,7 +45,7 @@ print(len([warning for warning in report["warnings"] if "memory limit" in warnin
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is read as Linux tells it")
 @pytest.mark.parametrize(
     ("scene", "quality", "limit", "size"),
-    [("cornell_box", "HIGH", 64, 0.0), ("furnished_room", "GOOD", 64, 0.03)],
+    [("cornell_box", "HIGH", 64, 0.0), ("furnished_room", "GOOD", 64, 0.03), ("furnished_room", "HIGH", 128, 0.0)],
 )
 def test_a_bake_that_wants_more_keeps_to_the_limit_and_says_what_it_left_out(scene, quality, limit, size):
     command = [sys.executable, "-c", BAKE, str(ROOT), scene, quality, str(limit), str(size)]
