@@ -18,6 +18,7 @@ from ..core.sampling import Singles
 from ..core.scene import Floats, Ints
 from ..core.textures import cell_centres
 from .layers import Layers, Subdivision, carry, layers_of
+from .light_paths import as_diffuse_rays_see, as_seen_from_all_sides
 from .local_mesh import LocalMesh
 from .scratch import bake_in, scratch_scene
 
@@ -143,6 +144,7 @@ def evaluate(
                 mesh.materials.append(_bakeable(materials[number] if known else None, image))
             scratch = _object_like(obj, mesh, matrix)
             scene.collection.objects.link(scratch)
+            _look_as(scene, bpy.context.scene)
 
             def colours(kind: str, **passes: Any) -> Singles:
                 bake_in(
@@ -262,6 +264,9 @@ def _bakeable(material: bpy.types.Material | None, image: bpy.types.Image) -> bp
             if node.type == "OUTPUT_MATERIAL":
                 for link in node.inputs["Displacement"].links:
                     link.id_data.links.remove(link)
+        trees = list(_trees(made.node_tree))
+        as_diffuse_rays_see(trees)
+        as_seen_from_all_sides(trees)
     tree = made.node_tree
     target = tree.nodes.new("ShaderNodeTexImage")
     target.image = image
@@ -343,6 +348,13 @@ def _set_constant(node: bpy.types.Node, name: str, value: float) -> None:
         socket.default_value = value
 
 
+def _look_as(scene: bpy.types.Scene, shown: bpy.types.Scene) -> None:
+    """Give a scratch scene the frame of another, for films, and its camera, for coordinates that depend on it."""
+    scene.frame_current, scene.camera = shown.frame_current, shown.camera
+    for name in ("resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y"):
+        setattr(scene.render, name, getattr(shown.render, name))
+
+
 def _copy_groups(tree: bpy.types.NodeTree) -> None:
     """Give the groups of a tree trees of their own, which may be changed."""
     for node in tree.nodes:
@@ -351,14 +363,20 @@ def _copy_groups(tree: bpy.types.NodeTree) -> None:
             _copy_groups(node.node_tree)
 
 
-def _nodes(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.Node]:
-    """Return all nodes of a tree and of the groups in it."""
+def _trees(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.NodeTree]:
+    """Yield a tree and those of the groups in it."""
     if tree is None:
         return
+    yield tree
     for node in tree.nodes:
-        yield node
         if node.type == "GROUP":
-            yield from _nodes(node.node_tree)
+            yield from _trees(node.node_tree)
+
+
+def _nodes(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.Node]:
+    """Yield all nodes of a tree and of the groups in it."""
+    for part in _trees(tree):
+        yield from part.nodes
 
 
 def _depends_on_place(node: bpy.types.Node) -> bool:

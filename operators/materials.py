@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ..core.textures import sampled
 from .display import is_display
 from .images import UnreadableImageError, read_image
+from .light_paths import FACING, mean_facing, seen_by_diffuse_rays
 from .varying import Points, Value, Varying, combined, luminance, varies
 
 Colour = NDArray[np.float64]
@@ -220,6 +221,10 @@ class _ShaderReader:
         output = self.tree.get_output_node("CYCLES")
         if output is None:
             return _surface()
+        if self.with_textures and _input(output, "Volume").is_linked:
+            self.notes.append("its volume is left out")
+            if not _input(output, "Surface").is_linked:
+                return _surface(notes=self.notes, through=1.0)
         reflectance, emission, through, translucence = self._shader(_input(output, "Surface"), ())
         if not varies(through):
             through = np.clip(through, 0.0, 1.0)
@@ -252,6 +257,8 @@ class _ShaderReader:
             return _Shares(through=self._colour(node, "Color", groups))
         if node.type == "MIX_SHADER":
             share = self._share(node, "Fac", groups)
+            if not varies(share) and share in (0.0, 1.0):
+                return self._shader(node.inputs[1 + int(share)], groups)
             first, second = self._shader(node.inputs[1], groups), self._shader(node.inputs[2], groups)
             return _Shares(*(_mix(share, a, b) for a, b in zip(first, second, strict=True)))
         if node.type == "ADD_SHADER":
@@ -323,6 +330,13 @@ class _ShaderReader:
         if self.with_textures and output.node.type == "NEW_GEOMETRY" and output.identifier == "Backfacing":
             self.asked_for_side = True
             return float(self.back)
+        if self.with_textures and output.node.type == "LIGHT_PATH":
+            return seen_by_diffuse_rays(output.identifier)
+        if self.with_textures and output.node.type in FACING:
+            found = mean_facing(output.node, output.identifier)
+            if found is not None:
+                self.notes.append(f"{_title(output.node)} counts as its mean over all angles")
+                return found
         if self.with_textures:
             found = self._texture(output, outer)
             if found is not None:
@@ -349,6 +363,8 @@ class _ShaderReader:
             blend = node.blend_type if node.data_type == "RGBA" else "MIX"
             names = "Factor_Float", f"A_{kind}", f"B_{kind}"
             return self._blend(node, blend, names, groups, node.clamp_factor, node.clamp_result)
+        if node.type == "MATH" and node.operation in _SUMS:
+            return self._sum(node, groups)
         if node.type == "MIX_RGB":
             return self._blend(node, node.blend_type, ("Fac", "Color1", "Color2"), groups, True, node.use_clamp)
         return None
@@ -364,6 +380,13 @@ class _ShaderReader:
             return np.clip(result, 0.0, 1.0) if clamp_result else result
 
         return combined(blended, factor, first, second)
+
+    def _sum(self, node, groups) -> Value:
+        function, count = _SUMS[node.operation]
+        result = combined(function, *[self._value(node, name, groups) for name in _OPERANDS[:count]])
+        if node.use_clamp:
+            result = combined(lambda value: np.clip(value, 0.0, 1.0), result)
+        return result if varies(result) else float(result)
 
     def _image(self, node, output, groups) -> Value | None:
         if node.image is None or node.projection != "FLAT":
@@ -505,6 +528,20 @@ _BLENDS = {
     "SCREEN": lambda a, b: 1.0 - (1.0 - a) * (1.0 - b),
 }
 """What a Mix node makes of its second colour where its factor is 1."""
+
+_OPERANDS = "Value", "Value_001", "Value_002"
+
+_SUMS = {
+    "ADD": (np.add, 2),
+    "SUBTRACT": (np.subtract, 2),
+    "MULTIPLY": (np.multiply, 2),
+    "MULTIPLY_ADD": (lambda a, b, c: a * b + c, 3),
+    "MINIMUM": (np.minimum, 2),
+    "MAXIMUM": (np.maximum, 2),
+    "GREATER_THAN": (lambda a, b: np.float64(1.0) * (a > b), 2),
+    "LESS_THAN": (lambda a, b: np.float64(1.0) * (a < b), 2),
+}
+"""What a Math node makes of how many of its operands."""
 
 _CLEAR = 0.999
 """Share of the light that is let through from which on a material counts as not being there."""

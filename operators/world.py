@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender's world means for radiosity: one colour where it has one, else what Cycles makes of its nodes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import bpy
@@ -11,6 +11,7 @@ import numpy as np
 from ..core.errors import BakeError
 from ..core.scene import Floats, SunLamp
 from ..core.world import WHOLE_FACES, SkyCube, SkySamples, split_sky, window_corners
+from .light_paths import as_diffuse_rays_see
 from .materials import constant_emission, uses_nodes
 from .scratch import bake_in, scratch_scene
 
@@ -26,14 +27,6 @@ EVEN = 1e-4
 
 SMALLEST_SUN = np.radians(0.5)
 """The disc of a Sky Texture is made no smaller, or it might be missed: its light is the same."""
-
-_SEEN_BY_DIFFUSE_RAYS = {
-    "Is Diffuse Ray": 1.0,
-    "Is Reflection Ray": 1.0,
-    "Ray Depth": 1.0,
-    "Diffuse Depth": 1.0,
-}
-"""What a Light Path node tells a ray that left a diffuse surface; 0 for the rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,17 +59,18 @@ def world_light(world: bpy.types.World | None, frame: int = 1) -> WorldLight:
         return WorldLight(np.zeros(3))
     if not uses_nodes(world):
         return WorldLight(np.array(world.color[:3], dtype=np.float64))
-    colour, notes = constant_emission(world)
-    if not notes:
-        return WorldLight(colour)
+    colour, unread = constant_emission(world)
+    fog = ("its volume is left out",) if _has_volume(world) else ()
+    if not unread:
+        return WorldLight(colour, (), fog)
     try:
         sky = evaluated(world, frame)
     except (BakeError, RuntimeError) as error:
         why = str(error).removeprefix("Error: ").strip().rstrip(".")
-        return WorldLight(np.zeros(3), (), (f"its nodes could not be evaluated ({why}); it was left dark",))
-    notes = ()
+        return WorldLight(np.zeros(3), (), (*fog, f"its nodes could not be evaluated ({why}); it was left dark"))
+    notes = fog
     if sky.radiance.min() < 0.0:
-        notes = ("its emission is negative in places; it was taken for zero there",)
+        notes = (*fog, "its emission is negative in places; it was taken for zero there")
         sky = replace(sky, radiance=np.maximum(sky.radiance, 0.0))
     mean = sky.solid_angles @ sky.radiance / sky.solid_angles.sum()
     if np.abs(sky.radiance - mean).max() <= EVEN * mean.max():
@@ -87,6 +81,11 @@ def world_light(world: bpy.types.World | None, frame: int = 1) -> WorldLight:
 def _visible_to_diffuse_rays(world: bpy.types.World) -> bool:
     visibility = getattr(world, "cycles_visibility", None)
     return visibility is None or bool(visibility.diffuse)
+
+
+def _has_volume(world: bpy.types.World) -> bool:
+    output = world.node_tree.get_output_node("CYCLES")
+    return output is not None and output.inputs["Volume"].is_linked
 
 
 def evaluated(world: bpy.types.World, frame: int = 1) -> SkySamples:
@@ -103,8 +102,9 @@ def evaluated(world: bpy.types.World, frame: int = 1) -> SkySamples:
         scene.world = world.copy()
         # No map to sample it by is needed.
         scene.world.cycles.sampling_method = "NONE"
-        for tree in _own_trees(scene.world.node_tree):
-            _as_diffuse_rays_see(tree)
+        trees = list(_own_trees(scene.world.node_tree))
+        _with_suns_of_some_size(trees)
+        as_diffuse_rays_see(trees)
         size = _face_size(scene.world.node_tree)
         cube = SkyCube(_baked(scene, WHOLE_FACES, size))
         windows = cube.bright_windows()
@@ -121,20 +121,12 @@ def _own_trees(tree: bpy.types.NodeTree) -> Iterator[bpy.types.NodeTree]:
             yield from _own_trees(node.node_tree)
 
 
-def _as_diffuse_rays_see(tree: bpy.types.NodeTree) -> None:
-    """Have a copied tree give what it gives rays that leave a diffuse surface."""
-    for node in list(tree.nodes):
-        if node.type == "TEX_SKY" and getattr(node, "sun_disc", False):
-            node.sun_size = max(node.sun_size, SMALLEST_SUN)
-        if node.type != "LIGHT_PATH":
-            continue
-        for output in node.outputs:
-            sockets = [link.to_socket for link in output.links]
-            if sockets:
-                constant = tree.nodes.new("ShaderNodeValue")
-                constant.outputs[0].default_value = _SEEN_BY_DIFFUSE_RAYS.get(output.identifier, 0.0)
-            for socket in sockets:
-                tree.links.new(constant.outputs[0], socket)
+def _with_suns_of_some_size(trees: Iterable[bpy.types.NodeTree]) -> None:
+    """Widen the suns of sky textures in copied trees to what is not missed."""
+    for tree in trees:
+        for node in tree.nodes:
+            if node.type == "TEX_SKY" and getattr(node, "sun_disc", False):
+                node.sun_size = max(node.sun_size, SMALLEST_SUN)
 
 
 def _face_size(tree: bpy.types.NodeTree) -> int:

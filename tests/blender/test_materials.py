@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What each kind of material does to light, and what is said about the rest."""
 
+import math
+
 import bpy
 import numpy as np
 import pytest
@@ -255,3 +257,88 @@ def test_a_back_of_another_colour_counts_as_the_front_and_is_named():
     red, blue = (("ShaderNodeBsdfDiffuse", {"Color": colour}) for colour in ((1, 0, 0, 1), (0, 0, 1, 1)))
     (note,) = assert_surface(sided_material(red, blue), (1.0, 0.0, 0.0))
     assert "from behind" in note
+
+
+def mixed_by(socket_of_tree, first, second):
+    """Return a material that mixes two shader nodes, (type, inputs), by the output that a function makes in its tree."""
+    material = bpy.data.materials.new("Mixed")
+    tree = node_tree(material)
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(socket_of_tree(tree), mix.inputs[0])
+    for place, (kind, inputs) in ((1, first), (2, second)):
+        node = tree.nodes.new(kind)
+        for name, value in inputs.items():
+            socket_of(node, name).default_value = value
+        tree.links.new(node.outputs[0], mix.inputs[place])
+    link_surface(tree, mix)
+    return material
+
+
+RED, BLUE = (("ShaderNodeBsdfDiffuse", {"Color": colour}) for colour in ((0.9, 0.0, 0.0, 1.0), (0.0, 0.0, 0.9, 1.0)))
+
+
+def ray(name):
+    return lambda tree: tree.nodes.new("ShaderNodeLightPath").outputs[name]
+
+
+def test_what_only_the_camera_sees_does_not_travel():
+    assert assert_surface(mixed_by(ray("Is Camera Ray"), RED, BLUE), (0.9, 0.0, 0.0)) == ()
+    assert assert_surface(mixed_by(ray("Is Diffuse Ray"), RED, BLUE), (0.0, 0.0, 0.9)) == ()
+    lit = emission_material()
+    tree = lit.node_tree
+    shine = next(node for node in tree.nodes if node.type == "EMISSION")
+    tree.links.new(ray("Is Camera Ray")(tree), shine.inputs["Strength"])
+    assert assert_surface(lit, 0.0, 0.0) == ()
+
+
+def test_glass_that_is_clear_to_shadow_and_diffuse_rays_is_clear():
+    def either(tree):
+        most = tree.nodes.new("ShaderNodeMath")
+        most.operation = "MAXIMUM"
+        path = tree.nodes.new("ShaderNodeLightPath")
+        for name, socket in zip(("Is Shadow Ray", "Is Diffuse Ray"), most.inputs, strict=False):
+            tree.links.new(path.outputs[name], socket)
+        return most.outputs[0]
+
+    surface = material_surface(mixed_by(either, ("ShaderNodeBsdfGlass", {}), ("ShaderNodeBsdfTransparent", {})))
+    assert surface.clear and surface.notes == () and surface.unread == ()
+
+
+def test_a_shader_of_which_nothing_is_mixed_in_says_nothing():
+    glossy = ("ShaderNodeBsdfGlossy", {})
+    assert assert_surface(mixed_by(ray("Is Camera Ray"), RED, glossy), (0.9, 0.0, 0.0)) == ()
+
+
+def test_what_depends_on_the_angle_counts_as_its_mean_and_is_named():
+    def fresnel(tree):
+        node = tree.nodes.new("ShaderNodeFresnel")
+        node.inputs["IOR"].default_value = 1.5
+        return node.outputs[0]
+
+    # Of even light, the share that a smooth surface mirrors: Fresnel's formula, integrated by Walsh 1926.
+    n = 1.5
+    mirrored = 0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) ** 2)
+    mirrored += n**2 * (n**2 - 1.0) ** 2 / (n**2 + 1.0) ** 3 * math.log((n - 1.0) / (n + 1.0))
+    mirrored -= 2.0 * n**3 * (n**2 + 2.0 * n - 1.0) / ((n**2 + 1.0) * (n**4 - 1.0))
+    mirrored += 8.0 * n**4 * (n**4 + 1.0) / ((n**2 + 1.0) * (n**4 - 1.0) ** 2) * math.log(n)
+    (note,) = assert_surface(mixed_by(fresnel, RED, BLUE), (0.9 * (1.0 - mirrored), 0.0, 0.9 * mirrored))
+    assert "Fresnel" in note and "mean" in note
+
+    def facing(tree):
+        return tree.nodes.new("ShaderNodeLayerWeight").outputs["Facing"]
+
+    # At its blend of 0.5 it is one less the cosine, whose mean over even light is a third.
+    assert_surface(mixed_by(facing, RED, BLUE), (0.6, 0.0, 0.3))
+
+
+def test_a_box_of_smoke_is_clear_and_its_smoke_is_named():
+    material = bpy.data.materials.new("Smoke")
+    tree = node_tree(material)
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
+    tree.links.new(tree.nodes.new("ShaderNodeVolumePrincipled").outputs[0], output.inputs["Volume"])
+    surface = material_surface(material)
+    assert surface.clear and "volume" in surface.notes[0]
+    diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    surface = material_surface(material)
+    assert not surface.clear and "volume" in surface.notes[0]

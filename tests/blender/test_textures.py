@@ -246,6 +246,20 @@ def test_a_transparent_image_darkens_its_colours_unless_its_alpha_is_linked():
     assert_as_in_cycles(material, "EMIT")
 
 
+@pytest.mark.parametrize("mode", ["STRAIGHT", "PREMUL"])
+def test_a_file_with_alpha_has_the_colours_that_cycles_reads_from_it(tmp_path, mode):
+    image = smooth_image()
+    pixels = np.array(image.pixels).reshape(-1, 4)
+    pixels[:, 3] = np.linspace(0.5, 1.0, len(pixels))
+    image.pixels.foreach_set(pixels.astype(np.float32).reshape(-1))
+    image.filepath_raw, image.file_format = str(tmp_path / "picture.png"), "PNG"
+    image.save()
+    loaded = bpy.data.images.load(image.filepath_raw)
+    loaded.alpha_mode = mode
+    shining = painted(lambda tree: image_node(tree, loaded, extension="EXTEND"), "ShaderNodeEmission", Strength=1.0)
+    assert_as_in_cycles(shining, "EMIT")
+
+
 def test_a_leaf_is_cut_out_by_the_alpha_of_its_image():
     image = bpy.data.images.new("Leaf", 8, 8, alpha=True)
     pixels = np.ones((8, 8, 4), dtype=np.float32)
@@ -312,6 +326,50 @@ def noise(tree, coordinates="Generated"):
 @pytest.mark.parametrize("coordinates", ["Generated", "Object", "UV"])
 def test_procedural_textures_are_evaluated_by_blender(coordinates):
     assert_as_in_cycles(painted(lambda tree: noise(tree, coordinates)), step=SCALED * STEP)
+
+
+def test_coordinates_of_the_camera_are_those_of_the_scenes_camera():
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (0.4, -0.7, 3.0), (0.1, 0.2, 0.3)
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    assert_as_in_cycles(painted(lambda tree: noise(tree, "Camera")), step=SCALED * STEP)
+
+
+def test_an_image_sequence_shows_the_current_frame(tmp_path):
+    for frame, colour in ((1, (0.8, 0.1, 0.1)), (2, (0.1, 0.7, 0.2))):
+        still = bpy.data.images.new(f"Still {frame}", 4, 4, float_buffer=True, is_data=True)
+        still.pixels.foreach_set(np.tile(np.array([*colour, 1.0], dtype=np.float32), 16))
+        still.filepath_raw, still.file_format = str(tmp_path / f"still_{frame:04d}.exr"), "OPEN_EXR"
+        still.save()
+    film = bpy.data.images.load(str(tmp_path / "still_0001.exr"))
+    film.source, film.colorspace_settings.name = "SEQUENCE", "Non-Color"
+    material = painted(lambda tree: image_node(tree, film))
+    user = next(node for node in material.node_tree.nodes if node.type == "TEX_IMAGE").image_user
+    user.frame_duration, user.frame_start, user.use_auto_refresh = 2, 1, True
+    sheet = add_sheet(material)
+    for frame, colour in ((2, (0.1, 0.7, 0.2)), (1, (0.8, 0.1, 0.1))):
+        bpy.context.scene.frame_set(frame)
+        shown, _ = by_us(sheet, "DIFFUSE")
+        # Half floats are kept of an EXR.
+        assert shown == pytest.approx(np.broadcast_to(colour, shown.shape), abs=1e-3)
+
+
+def test_an_evaluated_material_looks_as_diffuse_rays_see_it():
+    def seen(tree):
+        mix = tree.nodes.new("ShaderNodeMix")
+        mix.data_type = "RGBA"
+        path = tree.nodes.new("ShaderNodeLightPath")
+        tree.links.new(path.outputs["Is Camera Ray"], socket_of(mix, "Factor_Float"))
+        tree.links.new(noise(tree), socket_of(mix, "A_Color"))
+        socket_of(mix, "B_Color").default_value = (0.0, 0.0, 0.0, 1.0)
+        return next(socket for socket in mix.outputs if socket.identifier == "Result_Color")
+
+    sheet = add_sheet(painted(seen))
+    shown, _ = by_us(sheet, "DIFFUSE")
+    sheet.data.materials[0] = painted(noise)
+    plain, _ = by_us(sheet, "DIFFUSE")
+    assert shown == pytest.approx(plain, abs=1e-5) and shown.max() > 0.1
 
 
 def test_what_blender_evaluates_emits_too():

@@ -142,6 +142,14 @@ def test_a_negative_world_is_dark_and_named():
     assert radiance.tolist() == [0.0, 0.0, 0.0] and "negative" in note
 
 
+def test_fog_is_left_out_and_named():
+    world, _, tree = add_world(Color=(0.2, 0.4, 0.6, 1.0), Strength=1.0)
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_WORLD")
+    tree.links.new(tree.nodes.new("ShaderNodeVolumeScatter").outputs[0], output.inputs["Volume"])
+    light = world_light(world)
+    assert light.radiance == pytest.approx([0.2, 0.4, 0.6]) and "volume" in light.notes[0]
+
+
 def test_without_cycles_a_textured_world_is_dark_and_named():
     world = sky_world()
     bpy.ops.preferences.addon_disable(module="cycles")
