@@ -45,6 +45,10 @@ def read_image(image: bpy.types.Image, extension: str, closest: bool, alpha_used
     width, height = image.size
     if not (width and height and image.channels):
         raise UnreadableImageError(f'"{image.name}" has no pixels')
+    by_file = image.source == "FILE" and image.packed_file is None and image.channels == 4
+    if by_file and image.alpha_mode == ("STRAIGHT" if image.is_float else "PREMUL"):
+        # Cycles goes by the kind of file, Blender by the setting, and has changed the pixels.
+        raise UnreadableImageError(f'the alpha of "{image.name}" is not of the kind that its file has')
     flat = np.empty(width * height * image.channels, dtype=np.float32)
     image.pixels.foreach_get(flat)
     pixels = _with_four_channels(flat.reshape(height, width, image.channels))

@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import chain
 
 import bpy
 
@@ -48,12 +49,21 @@ def _rendered_collections(collection: bpy.types.Collection) -> Iterator[bpy.type
             pending.extend(current.children)
 
 
+def _layers_behind(scene: bpy.types.Scene) -> Iterator[bpy.types.ViewLayer]:
+    """Yield the view layers of a scene's background scene, and of that one's: they render with it."""
+    seen = {scene}
+    while (scene := scene.background_set) is not None and scene not in seen:
+        seen.add(scene)
+        yield next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+
+
 class Participants:
     """The objects and instances of a view layer that take part in the light transport."""
 
     def __init__(self, view_layer: bpy.types.ViewLayer) -> None:
         self.view_layer = view_layer
-        self.objects = rendered_objects(view_layer)
+        self.layers = (view_layer, *_layers_behind(view_layer.id_data))
+        self.objects = set().union(*(rendered_objects(layer) for layer in self.layers))
         self.instanced_collections: set[bpy.types.Collection] = set()
         self._members: dict[bpy.types.Collection, set[bpy.types.Object]] = {}
         self._everyone: dict[bpy.types.Collection, set[bpy.types.Object]] = {}
@@ -113,16 +123,16 @@ def shown_as_rendered(context: bpy.types.Context) -> Iterator[tuple[bpy.types.De
 
 
 def _show_objects(journal: Journal, participants: Participants) -> None:
-    view_layer = participants.view_layer
     for obj in participants.everything():
         if obj.hide_viewport:
             journal.set(obj, "hide_viewport", False)
         if obj.show_instancer_for_viewport != obj.show_instancer_for_render:
             journal.set(obj, "show_instancer_for_viewport", obj.show_instancer_for_render)
-    for obj in participants.objects:
-        if obj.hide_get(view_layer=view_layer):
-            journal.on_failure(_hide, obj, view_layer)
-            obj.hide_set(False, view_layer=view_layer)
+    for layer in participants.layers:
+        for obj in participants.objects.intersection(layer.objects):
+            if obj.hide_get(view_layer=layer):
+                journal.on_failure(_hide, obj, layer)
+                obj.hide_set(False, view_layer=layer)
 
 
 def _hide(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> None:
@@ -130,7 +140,7 @@ def _hide(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> None:
 
 
 def _show_collections(journal: Journal, participants: Participants) -> None:
-    for layer_collection in _rendered_layer_collections(participants.view_layer):
+    for layer_collection in chain.from_iterable(map(_rendered_layer_collections, participants.layers)):
         if layer_collection.hide_viewport:
             journal.set(layer_collection, "hide_viewport", False)
         if layer_collection.collection.hide_viewport:

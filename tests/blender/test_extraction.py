@@ -262,6 +262,19 @@ def test_objects_hidden_in_the_viewport_only_take_part_and_stay_hidden(how):
     assert not cube.visible_get()
 
 
+def test_the_background_scene_takes_part_and_stays_as_it_is():
+    cube = add_cube("Front")
+    behind = bpy.data.scenes.new("Behind")
+    box, unseen = (bpy.data.objects.new(name, cube.data) for name in ("Box", "Unseen"))
+    for obj in (box, unseen):
+        behind.collection.objects.link(obj)
+    unseen.hide_render = True
+    box.hide_set(True, view_layer=behind.view_layers[0])
+    bpy.context.scene.background_set = behind
+    names = sorted(mesh.name for mesh in extracted(cube).scene.meshes)
+    assert names == ["Box", "Front"] and box.hide_get(view_layer=behind.view_layers[0])
+
+
 def collection_instance(collection, name="Instance"):
     instance = add_object(name, None)
     instance.instance_type, instance.instance_collection = "COLLECTION", collection
