@@ -260,7 +260,7 @@ def test_a_back_of_another_colour_counts_as_the_front_and_is_named():
 
 
 def mixed_by(socket_of_tree, first, second):
-    """Return a material that mixes two shader nodes, (type, inputs), by the output that a function makes in its tree."""
+    """Return a material that mixes two shader nodes, (type, inputs), by an output that a function makes."""
     material = bpy.data.materials.new("Mixed")
     tree = node_tree(material)
     mix = tree.nodes.new("ShaderNodeMixShader")
