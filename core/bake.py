@@ -20,6 +20,7 @@ from .clock import Clock
 from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
 from .detail import FaceSizes, GatherAt, counted_share_of_triangles, light_up, light_up_in_detail
+from .diagonals import turned_diagonals
 from .direct import all_emitters
 from .divisions import Divisions, blocked_edges
 from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
@@ -262,11 +263,12 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
-    cuts, on_faces, crowded = None, None, False
+    cuts, on_faces, diagonals, crowded = None, None, None, False
     walls = ~surfaces.closed[surfaces.shell_of_triangle]
     if settings.output == "ORIGINAL":
         faces = input_faces(surfaces)
         shown = light_up_first(faces, counted_share_of_triangles(tree, LARGEST_PATCH * area)[faces.triangle])
+        drawn = shown
     else:
         aside = transport.is_aside()
         sizes = FaceSizes(smallest, finest, finest_cut, LARGEST_PATCH * area, most_vertices)
@@ -289,26 +291,29 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells, of_node, divisions)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
-        hidden, touching = shown.gathered.hidden, shown.gathered.touching
-        fronts = shown.places.of_corner[: len(shown.faces.triangle)]
-        ways = blocked_edges(rays, shown.places, fronts, hidden, finest, walls)
+        if settings.method == "ADAPTIVE":
+            diagonals = turned_diagonals(surfaces, shown, effort.tolerance)
+        drawn = shown.redrawn(diagonals)
+        hidden, touching = drawn.gathered.hidden, drawn.gathered.touching
+        fronts = drawn.places.of_corner[: len(drawn.faces.triangle)]
+        ways = blocked_edges(rays, drawn.places, fronts, hidden, finest, walls)
         edges = CutEdges.joined(
             [
-                find_cuts(shown.faces, shown.places, hidden, is_hidden),
-                edges_to_outlines(shown.faces, shown.places, hidden, touching),
-                edges_under_walls(shown.faces, shown.places, hidden, ways),
+                find_cuts(drawn.faces, drawn.places, hidden, is_hidden),
+                edges_to_outlines(drawn.faces, drawn.places, hidden, touching),
+                edges_under_walls(drawn.faces, drawn.places, hidden, ways),
             ]
         )
-        before, beyond = cut_receivers(shown.faces, shown.places, edges)
+        before, beyond = cut_receivers(drawn.faces, drawn.places, edges)
         # What is beyond an edge that ends on the outline is not asked for, and what nothing can see is dark.
         asked = np.flatnonzero(~edges.whole)
         dark = np.ones(len(edges.whole), dtype=bool)
         dark[asked] = is_hidden(beyond.taken(asked))
         cuts = TracedCuts(edges, gather_at(before), gather_unless(dark, beyond, gather_at))
 
-    expected = shown.expected_error(surfaces)
-    cut = cut_light(shown, cuts)
-    checks = check_places(shown.areas_of(surfaces, cut[0], cut[1]), len(shown.places.points))
+    expected = drawn.expected_error(surfaces)
+    cut = cut_light(drawn, cuts)
+    checks = check_places(drawn.areas_of(surfaces, cut[0], cut[1]), len(drawn.places.points))
     checks = replace(checks, gathered=gather_at(receivers_of_checks(surfaces, cut[0], cut[1], checks)))
 
     clock.start("Reconstructing", 0.98, 1.0)
@@ -335,7 +340,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory)
     warnings += patch_limit_warnings(rounds, len(tree.patches()), settings.patch_limit)
     story = Story(settings, counts, warnings)
-    kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, cuts, checks, story)
+    kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, diagonals, cuts, checks, story)
     parts = partial(parts_of, kept, scene, rays.workers)
     result = result_of(scene, surfaces, lit, patches, light.solution, expected, cut, checks, story, clock, parts)
     return replace(result, kept=keep(kept)) if settings.keep_transport else result

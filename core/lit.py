@@ -90,6 +90,31 @@ class Lit:
         square = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
         return math.sqrt(square / area) / mean if mean > 0.0 else 0.0
 
+    def redrawn(self, corner: Ints | None) -> Lit:
+        """The same light on faces whose diagonals were turned.
+
+        A face may then lie in two leaves of the tree, and is still said to lie in one of them.
+
+        Parameters
+        ----------
+        corner : (faces, 3) int or None
+            Their corners, as numbers of the corners that there are, counted through all faces; None for the same.
+        """
+        if corner is None:
+            return self
+        faces, of_corner, count = self.faces, self.places.of_corner.ravel(), len(self.faces.triangle)
+        row = np.zeros(count, dtype=np.int64)
+        row[self.face[count:]] = np.arange(count, len(self.face))
+        behind = (3 * row[corner // 3] + corner % 3)[self.face[count:]]
+        drawn = replace(
+            faces,
+            corners=faces.corners.ravel()[corner],
+            vertices=faces.vertices.ravel()[corner],
+            weights=faces.weights.reshape(-1, 3)[corner],
+        )
+        places = replace(self.places, of_corner=np.concatenate([of_corner[corner], of_corner[behind]]))
+        return replace(self, faces=drawn, places=places)
+
     def part(self, kept: NDArray[np.bool_]) -> Lit:
         """Some of the faces, (faces,) bool, which share no receiver with the others."""
         rows = np.flatnonzero(kept[self.face])

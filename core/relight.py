@@ -64,6 +64,8 @@ class KeptTransport:
         Faces and what was gathered at them.
     on_faces : PlacesOnFaces or None
         None where rays are not looked up in the light of the vertices.
+    diagonals : (faces, 3) int or None
+        How the faces are redrawn when they have their light.
     cuts : TracedCuts or None
     checks : Checks
         On the faces, cut.
@@ -76,6 +78,7 @@ class KeptTransport:
     patches: TracedPatches
     shown: Lit
     on_faces: PlacesOnFaces | None
+    diagonals: Ints | None
     cuts: TracedCuts | None
     checks: Checks
     story: Story
@@ -237,11 +240,12 @@ def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Wor
 def _gathered_again(
     kept: KeptTransport, patches: TracedPatches, light: PatchLight, surfaces: Surfaces, workers: Workers
 ) -> tuple[Lit, tuple[Faces, Ints, Floats], Radiance]:
-    """The faces in the light of the patches, the same cut, and what rays saw last."""
+    """The faces in the light of the patches, redrawn as in the bake, the same cut, and what rays saw last."""
     radiance = Radiance.of(patches.cells, light.seen, surfaces.world)
     shown = replace(kept.shown, gathered=relit(workers, patches.emitters, radiance, kept.shown.gathered))
     if kept.on_faces is not None:
         shown, radiance = looked_again(workers, patches, light, surfaces, shown, kept.on_faces)
+    shown = shown.redrawn(kept.diagonals)
     if kept.cuts is None:
         return shown, cut_light(shown, None), radiance
     seen, hidden = (relit(workers, patches.emitters, radiance, side) for side in (kept.cuts.seen, kept.cuts.hidden))

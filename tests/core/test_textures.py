@@ -157,8 +157,9 @@ def test_a_textured_emitter_lights_the_room_as_two_that_are_even():
         exact.rectangle("one", (0.7, 0.7, 1.95), (0, 0.6, 0), (0.3, 0, 0), emission=(10.0, 0.0, 0.0)),
         exact.rectangle("other", (1.0, 0.7, 1.95), (0, 0.6, 0), (0.3, 0, 0), emission=(0.0, 0.0, 4.0)),
     ]
-    textured_floor = probes_of_floor(bake(room(plain_east(), [lamp]), COARSE))
-    cut_floor = probes_of_floor(bake(room(plain_east(), cut), COARSE))
+    # On coarse faces interpolation misses several hundredths, and not the same where the diagonals differ.
+    textured_floor = probes_of_floor(bake(room(plain_east(), [lamp]), FINE))
+    cut_floor = probes_of_floor(bake(room(plain_east(), cut), FINE))
     assert np.abs(textured_floor[:, [0, 2]] / cut_floor[:, [0, 2]] - 1.0).max() < NOISE
 
 
