@@ -166,8 +166,9 @@ class RadiositySettings(bpy.types.PropertyGroup):
     patch_limit: bpy.props.IntProperty(
         name="Patch Limit",
         description=(
-            "Patches that may exchange light; 0 is no limit. What receives least of the light stays coarse, dense meshes "
-            "are clustered more coarsely, and a warning says so. Vertices are added where shadows need them all the same"
+            "Patches that may exchange light; 0 is no limit. What receives least of the light stays coarse, dense "
+            "meshes are clustered more coarsely, and a warning says so. Vertices are added where shadows need them "
+            "all the same"
         ),
         default=DEFAULTS.patch_limit,
         min=0,
