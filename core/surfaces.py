@@ -238,7 +238,7 @@ def join(scene: Scene) -> Surfaces:
     extent = _extent(scene.meshes)
     kept = [_sound(mesh, extent, warnings) for mesh in scene.meshes]
     if not any(mesh.baked and len(keep) for mesh, keep in zip(scene.meshes, kept, strict=True)):
-        raise NothingToBakeError(_no_face(scene, kept))
+        raise NothingToBakeError(_no_face(scene))
     first_point = np.concatenate([[0], np.cumsum([len(mesh.vertices) for mesh in scene.meshes])]).astype(np.int64)
     points = np.concatenate([_finite(mesh.vertices) for mesh in scene.meshes])
     places = np.concatenate([welded(_finite(m.vertices)) + o for m, o in zip(scene.meshes, first_point, strict=False)])
@@ -376,14 +376,14 @@ def _sound(mesh: SurfaceMesh, extent: float, warnings: list[str]) -> Ints:
     return np.flatnonzero(somewhere & ~small)
 
 
-def _no_face(scene: Scene, kept: list[Ints]) -> str:
+def _no_face(scene: Scene) -> str:
     """Why there is nothing to bake, and what to do."""
     corners = np.concatenate([m.vertices[m.triangles] for m in scene.meshes if m.baked] or [np.zeros((0, 3, 3))])
     if not (triangle_areas(corners[_somewhere(corners).all(axis=1)]) > 0.0).any():
         return "None of the meshes to bake has a face with an area; select a mesh that has faces"
-    reach = [
-        float(np.abs(m.vertices[m.triangles[k]]).max(initial=0.0)) for m, k in zip(scene.meshes, kept, strict=True)
-    ]
+    # What reaches far may be thin, and left out itself.
+    corners_of_mesh = [m.vertices[m.triangles] for m in scene.meshes]
+    reach = [float(np.abs(c[_somewhere(c).all(axis=1)]).max(initial=0.0)) for c in corners_of_mesh]
     farthest = int(np.argmax(reach))
     return (
         f'The meshes to bake are too small beside "{scene.meshes[farthest].name}", which reaches {reach[farthest]:.1e} '

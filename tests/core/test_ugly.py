@@ -169,6 +169,13 @@ def test_what_is_too_large_for_the_rest_of_the_scene_is_named_where_nothing_is_l
         bake(Scene((FLOOR, hidden), WHITE), COARSE)
 
 
+def test_what_is_too_large_is_named_though_it_is_too_thin_to_be_left():
+    # Its area is nothing to speak of, either, and yet it is what the scene's size comes from.
+    long = surface_mesh("long", [(0, 0, -5), (1e11, 0, -5), (0, 1e-7, -5)], [(0, 1, 2)], baked=False)
+    with pytest.raises(NothingToBakeError, match=r'too small beside "long", which reaches 1\.0e\+11 far'):
+        bake(Scene((FLOOR, long), WHITE), COARSE)
+
+
 def test_many_slivers_have_no_more_pieces_than_there_is_room_for(monkeypatch):
     monkeypatch.setattr("radiosity_bake.core.patches.MOST_PIECES", 1000)
     slivers = [surface_mesh(f"sliver {k}", [(0, 0, k), (1e4, 0, k), (1e4, 0.1, k)], [(0, 1, 2)]) for k in range(10)]
