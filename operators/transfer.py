@@ -37,7 +37,8 @@ def nearest_corners(base: LocalMesh, evaluated: LocalMesh, values: Mapping[str, 
     corners = base.corners.reshape(-1)
     corner, first = np.unique(corners, return_index=True)
     positions = base.vertices[base.triangles]
-    inside = positions + _INWARDS * (positions.mean(axis=1, keepdims=True) - positions)
+    with np.errstate(invalid="ignore"):  # of corners that lie nowhere
+        inside = positions + _INWARDS * (positions.mean(axis=1, keepdims=True) - positions)
     triangle, weights = _look_up(inside.reshape(-1, 3)[first], base.normals.reshape(-1, 3)[first], evaluated)
     carried = {}
     for name, colours in values.items():
@@ -47,20 +48,34 @@ def nearest_corners(base: LocalMesh, evaluated: LocalMesh, values: Mapping[str, 
 
 
 def _look_up(points: Floats, normals: Floats, mesh: LocalMesh) -> tuple[Ints, Floats]:
-    """Return the triangle (n,) nearest to each point on the side of its normal, and barycentric weights (n, 3)."""
-    tree = BVHTree.FromPolygons(mesh.vertices.tolist(), mesh.triangles.tolist(), all_triangles=True)
-    some_way = _SOME_WAY * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
-    facing = mesh.normals.mean(axis=1, dtype=np.float64)
-    triangle = np.empty(len(points), dtype=np.int64)
+    """Return the triangle (n,) nearest to each point on the side of its normal, and barycentric weights (n, 3).
+
+    The weights are 0 where there is none, as of points that are no numbers.
+    """
+    # A corner that is no number would be no farther from any point than all others.
+    sound = np.flatnonzero(np.isfinite(mesh.vertices[mesh.triangles]).all(axis=(1, 2)))
+    corners = mesh.vertices[mesh.triangles[sound]]
+    tree = BVHTree.FromPolygons(
+        corners.reshape(-1, 3).tolist(), np.arange(3 * len(sound)).reshape(-1, 3).tolist(), all_triangles=True
+    )
+    some_way = _SOME_WAY * float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0))) if len(sound) else 0.0
+    facing = mesh.normals[sound].mean(axis=1, dtype=np.float64)
+    triangle, weights = np.zeros(len(points), dtype=np.int64), np.zeros((len(points), 3))
     location = np.empty((len(points), 3))
-    for index, (point, normal) in enumerate(zip(points.tolist(), normals, strict=True)):
+    near = []
+    for index in np.flatnonzero(np.isfinite(points).all(axis=1)).tolist():
+        point, normal = points[index].tolist(), normals[index]
         found = tree.find_nearest(point)
+        if found[2] is None:
+            continue
         if facing[found[2]] @ normal < _SAME_SIDE:
             others = tree.find_nearest_range(point, _WIDER * found[3] + some_way)
             same_side = [other for other in others if facing[other[2]] @ normal >= _SAME_SIDE]
             found = min(same_side, key=lambda other: other[3], default=found)
         location[index], triangle[index] = found[0], found[2]
-    return triangle, _barycentric(location, mesh.vertices[mesh.triangles[triangle]])
+        near.append(index)
+    weights[near] = _barycentric(location[near], corners[triangle[near]])
+    return sound[triangle] if len(sound) else triangle, weights
 
 
 def _barycentric(points: Floats, triangles: Floats) -> Floats:

@@ -7,9 +7,12 @@ from functools import partial
 import bpy
 import numpy as np
 import pytest
+from radiosity_bake.operators.local_mesh import local_mesh
+from radiosity_bake.operators.transfer import nearest_corners
 
 from tests.blender.making import (
     add_cube,
+    add_mesh,
     add_object,
     add_plane,
     bake_selected,
@@ -70,6 +73,19 @@ def test_modifiers_that_change_the_faces_are_said_and_values_come_from_the_neare
     assert '"Plane"' in warning and "modifiers" in warning
     # The look-up goes a thousandth inwards.
     assert colours_of(plane.data)[:, :3] == pytest.approx(corner_positions(plane), abs=2e-3)
+
+
+@pytest.mark.parametrize("no_number", [np.nan, np.inf])
+def test_a_transfer_leaves_out_what_has_coordinates_that_are_no_numbers(no_number):
+    vertices, faces = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (5, 0, 0), (6, 0, 0), (5, 1, 0)], [(0, 1, 2), (3, 4, 5)]
+    sound = local_mesh(add_mesh("sound", vertices, faces).data)
+    broken = local_mesh(add_mesh("broken", [(no_number, 0, 0), *vertices[1:]], faces).data)
+    light = np.repeat([1.0, 2.0], 9).reshape(2, 3, 3)
+    # The second triangle is the nearest that there is for all corners, however far.
+    assert (nearest_corners(sound, broken, {"light": light})["light"] == 2.0).all()
+    carried = nearest_corners(broken, sound, {"light": light})["light"]
+    assert (carried[3:] == 2.0).all()
+    assert np.isfinite(carried).all()
 
 
 def test_a_transfer_keeps_to_the_side_that_the_corner_faces():
