@@ -100,9 +100,7 @@ class _Net:
 
     def turned(self, least: float) -> Ints:
         """Turn diagonals until light bends no less; returns the triangles' corners, (n, 3)."""
-        inner = np.flatnonzero(self._twin > np.arange(len(self._twin)))
-        inner = inner[self._group[inner // 3] == self._group[self._twin[inner] // 3]]
-        asked = inner[self._bends(inner, self._slope[inner]) > least]
+        asked = self._worth_it(np.arange(len(self._twin)), least)
         for _ in range(MOST_ROUNDS):
             turns = self._turns(asked)
             best = np.full(len(self._corner), -1)
@@ -112,14 +110,17 @@ class _Net:
                 break
             now = turns.taken(chosen)
             self._turn(now)
-            # What was not chosen waits; around what was, all is to be asked again.
+            # What was not chosen waits. Around what was, all is to be asked again, and numbers stand for other edges.
             near = 3 * np.unique(now.around)[:, None] + np.arange(3)
-            near = np.maximum(near, self._twin[near]).ravel()
-            near = near[self._twin[near] >= 0]
-            near = near[self._group[near // 3] == self._group[self._twin[near] // 3]]
-            asked = np.unique(np.concatenate([turns.edge[~chosen], near]))
-            asked = asked[self._bends(asked, self._slope[asked]) > least]
+            asked = self._worth_it(np.concatenate([turns.edge[~chosen], near.ravel()]), least)
         return self._corner
+
+    def _worth_it(self, edge: Ints, least: float) -> Ints:
+        """Those of some edges that may be turned, each by one of its two numbers."""
+        edge = np.unique(np.maximum(edge, self._twin[edge]))
+        edge = edge[self._twin[edge] >= 0]
+        edge = edge[self._group[edge // 3] == self._group[self._twin[edge] // 3]]
+        return edge[self._bends(edge, self._slope[edge]) > least]
 
     def _slopes(self, corner: Ints) -> tuple[Floats, Floats]:
         """How fast light grows outward at the edges of triangles (n, 3), (n, 3, c), and their lengths, (n, 3)."""

@@ -31,14 +31,18 @@ class Sheet:
         return result
 
 
+def even_sheet(cells: int) -> Sheet:
+    x, y = (k.ravel() for k in np.meshgrid(np.arange(cells + 1), np.arange(cells + 1), indexing="ij"))
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(cells), np.arange(cells), indexing="ij"))
+    a = i * (cells + 1) + j
+    b, c, d = a + cells + 1, a + cells + 2, a + 1
+    triangles = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)
+    return Sheet(np.stack([x, y, 0 * x], axis=1) / cells, triangles)
+
+
 @pytest.fixture
 def sheet() -> Sheet:
-    x, y = (k.ravel() for k in np.meshgrid(np.arange(CELLS + 1), np.arange(CELLS + 1), indexing="ij"))
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(CELLS), np.arange(CELLS), indexing="ij"))
-    a = i * (CELLS + 1) + j
-    b, c, d = a + CELLS + 1, a + CELLS + 2, a + 1
-    triangles = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3)
-    return Sheet(np.stack([x, y, 0 * x], axis=1) / CELLS, triangles)
+    return even_sheet(CELLS)
 
 
 def penumbra(points: Floats) -> Floats:
@@ -80,6 +84,23 @@ def test_only_diagonals_within_a_group_are_turned(sheet: Sheet) -> None:
     light = np.random.default_rng(2).random((len(sheet.points), 1))
     of_its_own = np.arange(len(sheet.triangles))
     assert np.array_equal(sheet.turned(light, of_its_own), sheet.triangles)
+
+
+def test_faces_stay_within_their_group_while_those_around_them_are_turned() -> None:
+    # Diagonals turn in many rounds, and the number of an edge that waits may then be that of another: on this sheet, of
+    # one between two strips.
+    cells, random = 8, np.random.default_rng(112)
+    even = even_sheet(cells)
+    points, triangles = even.points.copy(), even.triangles
+    points[:, :2] += random.uniform(-0.3, 0.3, (len(points), 2)) / cells
+    first = random.integers(0, 3, len(triangles))[:, None]
+    triangles = np.take_along_axis(triangles, (first + np.arange(3)) % 3, axis=1)
+    triangles = triangles[random.permutation(len(triangles))]
+    strip = (even.points[triangles].mean(axis=1)[:, 0] * cells // 2).astype(np.int64)
+    turned_triangles = Sheet(points, triangles).turned(random.random((len(points), 1)), strip)
+    x = even.points[turned_triangles][..., 0] * cells
+    assert (x >= 2.0 * strip[:, None]).all()
+    assert (x <= 2.0 * strip[:, None] + 2.0).all()
 
 
 def test_even_light_and_less_than_is_worth_it_turn_none(sheet: Sheet) -> None:
