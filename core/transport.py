@@ -28,6 +28,10 @@ COVER_POINTS, COVER_RAYS, LEAST_SHORT = 16, 8, 7 / 8
 """Points of a patch that are tested, rays of each, and the share that must be short at one of them for the patch to be
 covered in part; beside a wall half of them are, in the corner of a room three quarters."""
 
+SURE_COVER_RAYS = 128
+"""Rays of each point of a patch that seems covered in part: of eight, seven are often short in the corner of a room, and
+what counts as covered there exchanges light with its like alone."""
+
 LONG_ROW = 4
 """Times more rays that an element is given when most of its first ones started inside a solid."""
 
@@ -346,10 +350,11 @@ class Transport:
             some.append(table.element[(short > 0.5 / COVER_POINTS) & (short < 1.0 - 0.5 / COVER_POINTS)])
         elements = np.sort(np.concatenate(some))
         points, normals = sample_points(self.surfaces, tree, elements, COVER_POINTS, self.seed + 31)
-        short = self._short(elements, points, normals, reach, report)
-        covered = short >= LEAST_SHORT
-        mixed = covered.any(axis=1) & ~covered.all(axis=1)
-        elements, points, normals, short = elements[mixed], points[mixed], normals[mixed], short[mixed]
+        for rays in (COVER_RAYS, SURE_COVER_RAYS):
+            short = self._short(elements, points, normals, reach, rays, report)
+            covered = short >= LEAST_SHORT
+            mixed = covered.any(axis=1) & ~covered.all(axis=1)
+            elements, points, normals, short = elements[mixed], points[mixed], normals[mixed], short[mixed]
         twin = np.full(2 * len(tree), -1, dtype=np.int32)
         twin[elements] = 2 * len(tree) + np.arange(len(elements))
         self.cover = Cover(elements, points, normals, short, 2 * len(tree), twin, reach)
@@ -360,10 +365,16 @@ class Transport:
         return self.cover
 
     def _short(
-        self, elements: Ints, points: Floats, normals: Floats, reach: Singles, report: Callable[[float], None]
+        self,
+        elements: Ints,
+        points: Floats,
+        normals: Floats,
+        reach: Singles,
+        rays: int,
+        report: Callable[[float], None],
     ) -> Floats:
-        """Share of short rays at points of elements, (k, COVER_POINTS)."""
-        patterns = Patterns.make(0, COVER_RAYS, self.seed + 32)
+        """Share of short ones of so many rays at points of elements, (k, COVER_POINTS)."""
+        patterns = Patterns.make(0, rays, self.seed + 32)
 
         def work(first: int, last: int) -> Floats:
             axis = normals[first:last].reshape(-1, 3)
@@ -371,12 +382,12 @@ class Transport:
             pattern, angle = patterns.choose(key, self.seed + 33)
             directions = (patterns.directions[pattern] @ frames(axis, angle)).reshape(-1, 3)
             start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * OFFSET).astype(np.float32)
-            found = self.rays.first_hits(np.repeat(start, COVER_RAYS, axis=0), directions)
-            short = found.distance.reshape(-1, COVER_POINTS, COVER_RAYS) < reach[elements[first:last]][:, None, None]
+            found = self.rays.first_hits(np.repeat(start, rays, axis=0), directions)
+            short = found.distance.reshape(-1, COVER_POINTS, rays) < reach[elements[first:last]][:, None, None]
             result: Floats = short.mean(axis=2)
             return result
 
-        parts = self.rays.workers.map(work, len(elements), COVER_POINTS * COVER_RAYS, report)
+        parts = self.rays.workers.map(work, len(elements), COVER_POINTS * rays, report)
         return np.concatenate([np.zeros((0, COVER_POINTS)), *parts])
 
     def is_aside(self) -> NDArray[np.bool_]:

@@ -12,7 +12,7 @@ from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import HAIR, join
 from radiosity_bake.core.visibility import OFFSET, RayScene
 
-from tests.core.building import DARK, areas, block, flipped
+from tests.core.building import DARK, areas, block, flipped, fronts, transport_of
 from tests.scenes import exact
 
 ROOM = exact.closed_room((2, 2, 2), reflectance=0.5)
@@ -118,6 +118,18 @@ def test_a_lamp_close_below_a_ceiling_of_two_patches_lights_the_room_by_what_it_
     # 32 rays from each of 14 patches leave a few hundredths; with parts that had other areas as receivers than as
     # senders of light, a fifth of it was there twice.
     assert abs(energy["imbalance"]) < 0.1
+
+
+def test_nothing_is_covered_in_the_corners_of_an_empty_room():
+    # A corner sees its walls so close in three quarters of all directions. Taken for covered, the patches of one
+    # corner saw nothing but each other: at reflectance 0.999 they shone 25 times as bright as the room, and at 1 the bake
+    # was refused, though the room had a black lamp in it.
+    for seed in range(4):
+        transport = transport_of(Scene(exact.box_walls((4, 4, 4)), DARK), rays=32, seed=seed)
+        for _ in range(4):
+            transport.tree.split(transport.tree.leaves())
+        transport.trace(fronts(transport.tree))
+        assert len(transport.separate_cover().element) == 0
 
 
 def test_the_wall_before_an_open_box_of_one_sheet_is_lit():
