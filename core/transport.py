@@ -29,8 +29,8 @@ COVER_POINTS, COVER_RAYS, LEAST_SHORT = 16, 8, 7 / 8
 covered in part; beside a wall half of them are, in the corner of a room three quarters."""
 
 SURE_COVER_RAYS = 128
-"""Rays of each point of a patch that seems covered in part: of eight, seven are often short in the corner of a room, and
-what counts as covered there exchanges light with its like alone."""
+"""Rays of each point of a patch that seems covered in part: of eight, seven are often short in the corner of a room,
+and what counts as covered there exchanges light with its like alone."""
 
 LONG_ROW = 4
 """Times more rays that an element is given when most of its first ones started inside a solid."""

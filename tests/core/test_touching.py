@@ -122,8 +122,8 @@ def test_a_lamp_close_below_a_ceiling_of_two_patches_lights_the_room_by_what_it_
 
 def test_nothing_is_covered_in_the_corners_of_an_empty_room():
     # A corner sees its walls so close in three quarters of all directions. Taken for covered, the patches of one
-    # corner saw nothing but each other: at reflectance 0.999 they shone 25 times as bright as the room, and at 1 the bake
-    # was refused, though the room had a black lamp in it.
+    # corner saw nothing but each other: at reflectance 0.999 they shone 25 times as bright as the room, and at 1 the
+    # bake was refused, though the room had a black lamp in it.
     for seed in range(4):
         transport = transport_of(Scene(exact.box_walls((4, 4, 4)), DARK), rays=32, seed=seed)
         for _ in range(4):
