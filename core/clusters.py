@@ -36,6 +36,10 @@ sides of a right-angled edge come together."""
 LARGEST_SPREAD = 0.1
 """Of the reflectance within a cluster, in each channel."""
 
+LEAST_AREA = 1e-12
+"""Of a triangle that is joined, as a share of that of all: areas of clusters are differences of sums over all, in which
+single ones are known to 1e-16 of the whole or a little worse. The smaller ones stay as they are."""
+
 BENT = 4.0
 """How much a bent pair is put off: one as bent as the finest level allows counts as flat and of twice the area."""
 
@@ -161,6 +165,8 @@ def cluster_triangles(surfaces: Surfaces, triangle: Ints, corners: Floats, place
     if len(triangle) == 0:
         return Clusters.none()
     neighbours = _neighbours(places, surfaces.emission[triangle])
+    areas = triangle_areas(corners)
+    neighbours = neighbours[(areas[neighbours] > LEAST_AREA * areas.sum()).all(axis=1)]
     pieces = _Pieces.of(corners, surfaces.normals[triangle], surfaces.reflectance[triangle])
     levels = []
     for size, flatness in zip(LEVELS, LEAST_FLATNESS, strict=True):

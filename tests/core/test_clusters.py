@@ -60,6 +60,20 @@ def bumpy() -> PatchTree:
 # ------------------------------------------------------------------------------------------------ what is joined
 
 
+def test_triangles_whose_area_is_lost_beside_that_of_all_are_left_as_they_are():
+    # Areas of clusters are differences of sums. That of two pieces of a sliver was 0, and a cluster without area has no
+    # typical triangle: fewer were added to the tree than there are clusters.
+    surfaces = join(Scene((grid("grid", 8),), DARK))
+    corners = surfaces.points[surfaces.triangles]
+    tiny = np.array([126, 127])
+    corners[tiny] *= 1e-9
+    every = np.arange(len(corners))
+    clusters = method.cluster_triangles(surfaces, every, corners, surfaces.place_of_point[surfaces.triangles], 0.3)
+    assert len(clusters) > 1
+    assert clusters.areas().min() > 0.0
+    assert not np.isin(tiny, clusters.members).any()
+
+
 def test_clusters_are_nested(bumpy):
     clusters = bumpy.clusters
     for child in np.flatnonzero(clusters.parent >= 0):
