@@ -41,7 +41,8 @@ def lamp_of(obj: bpy.types.Object, matrix: Floats) -> tuple[Lamp | None, tuple[s
     if np.linalg.det(axes) == 0.0 and light.type in {"AREA", "SPOT"}:
         return None, (*notes, "its scale is 0, and it gives no light")
     if light.type == "AREA":
-        return _area_lamp(obj, centre, axes, power), notes
+        lamp = _area_lamp(obj, centre, axes, power)
+        return lamp, notes if lamp is not None else (*notes, "its size is 0, and it gives no light")
     return _point_lamp(obj, centre, axes, power), notes
 
 

@@ -242,6 +242,13 @@ def test_a_node_that_is_not_read_is_named_with_the_lamp():
     assert '"Key"' in warning and "Light Falloff" in warning
 
 
+def test_an_area_lamp_of_no_size_is_named():
+    add_lamp("AREA", shape="RECTANGLE", size=1.0, size_y=0.0)
+    lamps, warnings = lamps_read()
+    assert lamps == ()
+    assert warnings == ('Lamp "Lamp": its size is 0, and it gives no light',)
+
+
 def test_an_area_lamp_without_an_area_is_named():
     add_lamp("AREA", "Key", scale=(1.0, 1.0, 0.0))
     lamps, (warning,) = lamps_read()
