@@ -16,6 +16,8 @@ _ZSTANDARD, _END_OF_SEEKABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 _END_OF_BLEND = b"ENDB"
 """Name of the last block of one that is not compressed, which has but a header."""
 _TAIL = 64
+_ANYONE_WRITES = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+"""Marks of a folder; on Windows they tell nothing of who may write."""
 
 
 class FileError(BakeError):
@@ -41,6 +43,9 @@ def check_writable(path: Path, what: str) -> None:
         raise FileError(f"{what} {path}: there is no folder {path.parent}")
     if path.exists() and not path.stat().st_mode & stat.S_IWUSR:
         raise FileError(f"{what} {path} is read-only; give another name or make it writable")
+    # Root may write to it all the same, but whoever made it so did not mean root to.
+    if os.name == "posix" and not path.parent.stat().st_mode & _ANYONE_WRITES:
+        raise FileError(f"{what} {path}: the folder {path.parent} cannot be written to (it is read-only)")
     probe = _temporary(path)
     try:
         probe.touch(exist_ok=False)
