@@ -19,11 +19,21 @@ from .checks import check_places, receivers_of_checks
 from .clock import Clock
 from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
+from .dense_meshes import gather_sparsely
 from .detail import FaceSizes, GatherAt, counted_share_of_triangles, light_up, light_up_in_detail
 from .diagonals import turned_diagonals
 from .direct import all_emitters
 from .divisions import Divisions, blocked_edges
-from .gather import Gathered, GatherRays, enough_rays, gather, hidden_receivers
+from .gather import (
+    Gathered,
+    GatherRays,
+    Mixture,
+    enough_rays,
+    gather,
+    gather_indirect,
+    hidden_receivers,
+    with_direct,
+)
 from .interpolation import PlacesOnFaces, receivers_of_nodes
 from .lighting import (
     Story,
@@ -73,8 +83,8 @@ class Effort:
 
 EFFORTS = {
     "DRAFT": Effort(2_000, 32, 0.04, GatherRays(64, 0.05, 16, 32, 64, 0.06)),
-    "GOOD": Effort(4_000, 64, 0.008, GatherRays(384, 0.013, 64, 128, 256, 0.01)),
-    "HIGH": Effort(16_000, 128, 0.004, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
+    "GOOD": Effort(4_000, 64, 0.007, GatherRays(384, 0.013, 64, 128, 256, 0.01)),
+    "HIGH": Effort(16_000, 128, 0.00375, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
 }
 
 BYTES_PER_CELL = 400
@@ -127,6 +137,9 @@ WORKING_COPIES = 6
 
 CELLS_ALONG_PATCH = 4.0
 """Cells along the edge of the smallest patch, in which what rays look up is interpolated."""
+
+SPLIT_FROM = 2.0
+"""Sizes of the smallest faces from which on faces are split: a mesh that comes with shorter edges is dense."""
 
 CELLS_ALONG_FACE = 2.0
 """The same along that of the smallest face, where faces are not smaller than patches."""
@@ -246,19 +259,29 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
 
     per_receiver = effort.gather
 
-    def gather_at(places: Receivers) -> Gathered:
-        return gather(transport, cells, radiance, emitters, places, per_receiver, finest, most_kept, gathering)
+    def gather_at(places: Receivers, mixture: Mixture | None = None) -> Gathered:
+        return gather(transport, cells, radiance, emitters, places, per_receiver, finest, most_kept, gathering, mixture)
+
+    def indirect_at(places: Receivers) -> Gathered:
+        return gather_indirect(transport, cells, radiance, places, per_receiver, finest, most_kept, gathering)
+
+    def indirect_of_first(places: Receivers) -> Gathered:
+        return gather_sparsely(places, indirect_at, SPLIT_FROM * finest, effort.tolerance)
+
+    def gather_first(places: Receivers) -> Gathered:
+        indirect = indirect_of_first(places)
+        return with_direct(transport, emitters, places, per_receiver, gathering, indirect)
 
     def light_up_first(faces: Faces, share: Floats) -> Lit:
         nonlocal per_receiver
-        first = light_up(surfaces, lit, faces, share, gather_at)
+        first = light_up(surfaces, lit, faces, share, gather_first)
         while True:
             noise, count = first.noise(surfaces), len(first.places.points)
             enough = enough_rays(per_receiver, effort.gather.hemisphere, noise, count, most_kept)
             if enough is per_receiver:
                 return first
             per_receiver = enough
-            first = replace(first, gathered=gather_at(first.places))
+            first = replace(first, gathered=first.gathered.with_indirect(indirect_of_first(first.places)))
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)

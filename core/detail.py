@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,9 @@ from numpy.typing import NDArray
 from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error, lit_area
-from .gather import Gathered
+from .gather import Gathered, Mixture
 from .lit import Lit
+from .mixtures import middles_in_between
 from .patches import PatchTree
 from .receivers import Receivers, receivers
 from .scene import Floats, Ints
@@ -66,10 +68,21 @@ class FaceSizes:
 RECEIVERS_OF_SPLIT = 2
 """More receivers that a split makes, about: at the middles of edges, which neighbours share, and to fit to these."""
 
-GatherAt = Callable[[Receivers], Gathered]
+
+class GatherAt(Protocol):
+    """Gathers light at receivers."""
+
+    def __call__(self, places: Receivers, mixture: Mixture | None = None) -> Gathered:
+        """Gather light at all, but no indirect light at those of the mixture."""
 
 
-def light_up(surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, share: Floats, gather_at: GatherAt) -> Lit:
+def light_up(
+    surfaces: Surfaces,
+    lit: NDArray[np.bool_],
+    faces: Faces,
+    share: Floats,
+    gather_at: Callable[[Receivers], Gathered],
+) -> Lit:
     """Gather light at all corners of faces as they are, of which a share (faces,) counts."""
     face, side = _wanted_sides(faces, surfaces, lit)
     places = receivers(surfaces, faces, face, side)
@@ -112,12 +125,11 @@ def light_up_in_detail(
     The faces and their light, the tree whose leaves they lie in, and whether there would be too many vertices if they
     were split as they should be.
     """
-    shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, light_up_first, gather_at)
+    shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, tolerance, light_up_first, gather_at)
 
     def bright_enough(lit: Lit) -> NDArray[np.bool_]:
         # Where a sealed room ends that is dark anyhow, nothing breaks off.
-        _, area, light = shown.missed_light()
-        return _brightest_corner(lit) > tolerance * lit_area(area, light)[1]
+        return _brightest_corner(lit) > tolerance * shown.mean_light
 
     def split_by_feet(first_new: int) -> Ints:
         nodes = [np.zeros(0, dtype=np.int64)]
@@ -175,6 +187,8 @@ class _ShownFaces:
     Attributes
     ----------
     tree : PatchTree
+    mean_light : float, W m^-2 sr^-1
+        Mean luminance of what has light, before the first split.
     """
 
     def __init__(
@@ -183,6 +197,7 @@ class _ShownFaces:
         lit: NDArray[np.bool_],
         tree: PatchTree,
         largest: float,
+        tolerance: float,
         light_up_first: Callable[[Faces, Floats], Lit],
         gather_at: GatherAt,
     ) -> None:
@@ -193,6 +208,9 @@ class _ShownFaces:
         self._first = light_up_first(faces, self._share(faces))
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
         self._missed = _missed_light(surfaces, self._first, len(tree))
+        _, area, light = self._missed
+        lit_of_all, self.mean_light = lit_area(area, light)
+        self._goal = tolerance * self.mean_light, lit_of_all
         self._shell_of_node = surfaces.shell_of_triangle[tree.triangle]
 
     def parts(self) -> list[tuple[Lit, NDArray[np.bool_]]]:
@@ -226,7 +244,19 @@ class _ShownFaces:
             self._changed = changed.with_others(every, more, self.tree)
         self.tree.split(nodes)
         faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
-        self._changed = _updated(self._surfaces, self._lit, faces, self._share(faces), self._gather_at, self._changed)
+        self._changed = self._updated(faces)
+
+    def _updated(self, faces: Faces) -> Lit:
+        """Gather at the receivers that there were not, and take the others from what is known."""
+        known = self._changed
+        face, side = _wanted_sides(faces, self._surfaces, self._lit)
+        places = receivers(self._surfaces, faces, face, side)
+        old = known.places
+        place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
+        missing = np.flatnonzero(old.codes[place] != places.codes)
+        asked = places.taken(missing)
+        new = self._gather_at(asked, middles_in_between(known, self.tree, asked, self._goal))
+        return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing), self._share(faces))
 
     def _share(self, faces: Faces) -> Floats:
         """Share of the area of faces that counts, (faces,)."""
@@ -280,19 +310,6 @@ def counted_share_of_triangles(tree: PatchTree, largest: float) -> Floats:
     counted = np.bincount(triangle, weights=area * counted_share(tree.areas(tree.patch[leaves]), largest))
     share: Floats = counted / np.maximum(np.bincount(triangle, weights=area), np.finfo(np.float64).tiny)
     return share
-
-
-def _updated(
-    surfaces: Surfaces, lit: NDArray[np.bool_], faces: Faces, share: Floats, gather_at: GatherAt, known: Lit
-) -> Lit:
-    """Gather at the receivers that `known` has not, and take the others from it."""
-    face, side = _wanted_sides(faces, surfaces, lit)
-    places = receivers(surfaces, faces, face, side)
-    old = known.places
-    place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
-    missing = np.flatnonzero(old.codes[place] != places.codes)
-    new = gather_at(places.taken(missing))
-    return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing), share)
 
 
 def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:

@@ -15,7 +15,7 @@ from .cells import BELOW, Cells, Radiance
 from .direct import LUMINANCE, Emitters, direct_light
 from .direct_light import DirectLight
 from .geometry import order_along_curve
-from .met_places import MetPlaces
+from .met_places import MetPlaces, weighted
 from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP, ESCAPED
 from .sampling import Singles, even_chances, frames, hemisphere_lattice
@@ -111,6 +111,8 @@ class Gathered:
         Receivers that nothing but what hides them can see: inside a solid, or covered so closely.
     touching : (n,) bool
         Receivers on the outline of what stands there: their light is that of neither side.
+    free : (n,) float, scene units
+        The shortest way of their rays: nothing that these find is nearer.
     places : MetPlaces
         What the rays met, to look it up again.
     """
@@ -121,21 +123,30 @@ class Gathered:
     noise: Floats
     hidden: NDArray[np.bool_]
     touching: NDArray[np.bool_]
+    free: Floats
     places: MetPlaces
 
     @staticmethod
     def none(rays: int) -> Gathered:
         """At no receiver."""
-        nothing, unseen = np.zeros((0, 3)), np.zeros(0, dtype=bool)
-        places = MetPlaces.of(np.zeros((0, rays), np.int32))
-        return Gathered(nothing, DirectLight.none(0), nothing, np.zeros(0), unseen, unseen, places)
+        return Gathered.without_light(0, MetPlaces.of(np.zeros((0, rays), np.int32)), hidden=False)
 
     @staticmethod
     def dark(count: int, rays: int) -> Gathered:
         """At so many receivers that see nothing."""
-        dark, unseen = np.zeros((count, 3)), np.zeros(count, dtype=bool)
-        places = MetPlaces((np.full((1, rays), BELOW, dtype=np.int32),), np.zeros(count, dtype=np.int64), rays)
-        return Gathered(dark, DirectLight.none(count), dark, np.zeros(count), ~unseen, unseen, places)
+        table = np.full((1, rays), BELOW, dtype=np.int32)
+        return Gathered.without_light(count, MetPlaces.of_rows((table,), np.zeros(count, np.int64), rays), hidden=True)
+
+    @staticmethod
+    def without_light(count: int, places: MetPlaces, hidden: bool) -> Gathered:
+        """No light at so many receivers, all hidden or none, whose rays met `places`."""
+        dark, nothing, no = np.zeros((count, 3)), np.zeros(count), np.zeros(count, dtype=bool)
+        return Gathered(dark, DirectLight.none(count), dark, nothing, no | hidden, no, nothing, places)
+
+    def with_indirect(self, indirect: Gathered) -> Gathered:
+        """The same direct light, with other indirect light."""
+        direct, light = self.direct, self.direct_irradiance
+        return replace(indirect, irradiance=indirect.irradiance + light, direct=direct, direct_irradiance=light)
 
     def taken(self, which: Ints) -> Gathered:
         """At some of the receivers, each at most once."""
@@ -154,6 +165,7 @@ class Gathered:
             taken_of_two(self.noise, others.noise, which),
             taken_of_two(self.hidden, others.hidden, which),
             taken_of_two(self.touching, others.touching, which),
+            taken_of_two(self.free, others.free, which),
             self.places.joined(others.places).taken(which),
         )
 
@@ -172,7 +184,54 @@ class Gathered:
             merged(self.noise, more.noise),
             merged(self.hidden, more.hidden),
             merged(self.touching, more.touching),
+            merged(self.free, more.free),
             self.places.with_more(taken, more.places, rows),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """Receivers whose indirect light is a mean of what was gathered at others.
+
+    Attributes
+    ----------
+    which : (m,) int
+        The receivers.
+    known : Gathered
+        At the others.
+    parents : (m, k) int
+        Of those, and
+    weights : (m, k) float
+        by how much each counts.
+    """
+
+    which: Ints
+    known: Gathered
+    parents: Ints
+    weights: Floats | Singles
+
+    def others(self, count: int) -> Ints:
+        """Those of so many receivers that are no mixtures."""
+        own = np.ones(count, dtype=bool)
+        own[self.which] = False
+        return np.flatnonzero(own)
+
+    def with_others(self, gathered: Gathered) -> Gathered:
+        """The indirect light of all receivers, of which that of `others` was gathered."""
+        count = len(self.which) + len(gathered.noise)
+        number = np.empty(count, dtype=np.int64)
+        number[self.which] = np.arange(len(self.which))
+        number[self.others(count)] = len(self.which) + np.arange(len(gathered.noise))
+        return self._mixed().joined(gathered, number)
+
+    def _mixed(self) -> Gathered:
+        known, count = self.known, len(self.which)
+        places = known.places.mixed(self.parents, self.weights)
+        return replace(
+            Gathered.without_light(count, places, hidden=False),
+            irradiance=weighted(self.weights, known.irradiance - known.direct_irradiance, self.parents),
+            noise=weighted(np.abs(self.weights), known.noise, self.parents),
+            free=np.where(self.weights != 0.0, known.free[self.parents], np.inf).min(axis=1, initial=np.inf),
         )
 
 
@@ -186,8 +245,11 @@ def gather(
     finest: float,
     most_kept: int,
     report: Callable[[float], None],
+    mixture: Mixture | None = None,
 ) -> Gathered:
     """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`.
+
+    Those of `mixture` send no such rays.
 
     Parameters
     ----------
@@ -196,6 +258,40 @@ def gather(
     most_kept : int
         What rays met is kept while there are no more of them.
     """
+    if len(receivers.points) == 0:
+        return Gathered.none(counts.hemisphere * len(transport.rays.in_channels()))
+    asked = receivers if mixture is None else receivers.taken(mixture.others(len(receivers.points)))
+    indirect = gather_indirect(transport, cells, radiance, asked, counts, finest, most_kept, report)
+    if mixture is not None:
+        indirect = mixture.with_others(indirect)
+    return with_direct(transport, emitters, receivers, counts, report, indirect)
+
+
+def with_direct(
+    transport: Transport,
+    emitters: Emitters,
+    receivers: Receivers,
+    counts: GatherRays,
+    report: Callable[[float], None],
+    indirect: Gathered,
+) -> Gathered:
+    """Gather direct light at receivers whose indirect light is known."""
+    direct = _direct(transport, emitters, receivers, counts, report)
+    irradiance = direct.irradiance(emitters.strengths)
+    return replace(indirect, irradiance=indirect.irradiance + irradiance, direct=direct, direct_irradiance=irradiance)
+
+
+def gather_indirect(
+    transport: Transport,
+    cells: Cells,
+    radiance: Radiance,
+    receivers: Receivers,
+    counts: GatherRays,
+    finest: float,
+    most_kept: int,
+    report: Callable[[float], None],
+) -> Gathered:
+    """The same, but no direct light."""
     total, scenes = len(receivers.points), transport.rays.in_channels()
     each = counts.hemisphere * len(scenes)
     if total == 0:
@@ -211,7 +307,7 @@ def gather(
         places[below] = BELOW
         return places.reshape(-1, counts.hemisphere)
 
-    def indirect(first: int, last: int) -> tuple[Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
+    def indirect(first: int, last: int) -> tuple[Floats, Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
         part = slice(first, last)
         looks = [_looked(transport, receivers, part, pattern, rays) for rays in scenes]
         places = np.concatenate([places_met(*look) for look in looks], axis=1)
@@ -222,14 +318,15 @@ def gather(
         in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
         hidden = _covered(transport, receivers.sizes[part], finest, distance, in_plane) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
-        return means, noise, hidden, _touching(transport, receivers.inward[part], finest, distance) & ~hidden
+        touching = _touching(transport, receivers.inward[part], finest, distance) & ~hidden
+        free: Floats = distance.min(axis=1).astype(np.float64) / transport.rays.scale
+        return means, noise, free, hidden, touching
 
     parts = transport.rays.workers.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
-    means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
-    hidden, touching = (np.concatenate([p[k] for p in parts]) for k in (2, 3))
-    direct = _direct(transport, emitters, receivers, counts, report)
-    irradiance = direct.irradiance(emitters.strengths)
-    return Gathered(means + irradiance, direct, irradiance, noise, hidden, touching, MetPlaces.of(kept, len(scenes)))
+    means, noise, free = (np.concatenate([p[k] for p in parts]) for k in (0, 1, 2))
+    hidden, touching = (np.concatenate([p[k] for p in parts]) for k in (3, 4))
+    places = MetPlaces.of(kept, len(scenes))
+    return Gathered(means, DirectLight.none(total), np.zeros((total, 3)), noise, hidden, touching, free, places)
 
 
 def enough_rays(counts: GatherRays, first: int, noise: float, receivers: int, most_kept: int) -> GatherRays:
@@ -262,14 +359,16 @@ def enough_rays(counts: GatherRays, first: int, noise: float, receivers: int, mo
 def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gathered:
     """The same rays, whose ends are looked up in another `radiance`; none is traced."""
     places = gathered.places
+    named = places.named()
 
     def work(first: int, last: int) -> tuple[Floats, Floats, Floats]:
-        return _mean_seen(radiance, places.between(first, last), places.channels)
+        return _mean_seen(radiance, places.places(named[first:last]), places.channels)
 
-    parts = workers.map(work, len(places), places.rays)
+    parts = workers.map(work, len(named), places.rays)
     if not parts:
         return gathered
-    means, noise = (np.concatenate([p[k] for p in parts]) for k in (0, 1))
+    means = places.of_receivers(named, np.concatenate([p[0] for p in parts]))
+    noise = places.errors_of_receivers(named, np.concatenate([p[1] for p in parts]))
     return replace(gathered, irradiance=means + gathered.direct_irradiance, noise=noise)
 
 

@@ -69,8 +69,9 @@ class PlacesOnFaces:
         seen = np.zeros(count + MAP_CELLS, dtype=bool)
         # As indices, places take twice the memory, which is that of all gather rays: some at a time.
         rows = MET_AT_ONCE // max(met.rays, 1)
-        for first in range(0, len(met), rows):
-            some = met.between(first, first + rows)
+        named = met.named()
+        for first in range(0, len(named), rows):
+            some = met.places(named[first : first + rows])
             seen[some[some >= 0]] = True
         seen[cells.copied] |= seen[count - len(cells.copied) : count]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)

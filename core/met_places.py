@@ -5,11 +5,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .scene import Ints
+from .sampling import Singles
+from .scene import Floats, Ints
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,42 +19,55 @@ class MetPlaces:
     """The place that each ray of receivers met.
 
     It is most of what a bake holds in memory. So no table is copied when receivers are added or left out, and receivers
-    name their rows instead.
+    name their rows instead: one, or several with weights where the light is that of others, interpolated.
 
     Attributes
     ----------
     tables : tuple of (k, rays) int32
-    row : (n,) int
+    rows : (n, r) int
         Of each receiver, counted through all tables.
+    weights : (n, r) float32
+        Of these rows; 0 where there are fewer.
     rays : int
-        Of each receiver; 0 where the places of some are not kept, and there are no tables.
+        Of each row; 0 where the places of some are not kept, and there are no tables.
     channels : int
         1, or 3 where a third of the rays is for each.
     """
 
     tables: tuple[NDArray[np.int32], ...]
-    row: Ints
+    rows: Ints
+    weights: Singles
     rays: int
     channels: int = 1
 
     @staticmethod
     def of(table: NDArray[np.int32], channels: int = 1) -> MetPlaces:
         """The places of receivers (n, rays), row by row."""
-        return MetPlaces((table,), np.arange(len(table)), table.shape[1], channels)
+        return MetPlaces.of_rows((table,), np.arange(len(table)), table.shape[1], channels)
+
+    @staticmethod
+    def of_rows(tables: tuple[NDArray[np.int32], ...], row: Ints, rays: int, channels: int = 1) -> MetPlaces:
+        """The places of receivers that have one row (n,) each."""
+        return MetPlaces(tables, row[:, None], np.ones((len(row), 1), dtype=np.float32), rays, channels)
 
     def __len__(self) -> int:
-        return len(self.row)
+        return len(self.rows)
 
     def joined(self, others: MetPlaces) -> MetPlaces:
-        """Those of these receivers, then those of others."""
+        """Those of these receivers, then those of others, which may go on from these, with more tables."""
         rays = min(self.rays, others.rays)
-        counted_on = others.row + sum(len(table) for table in self.tables)
-        tables = self.tables + others.tables if rays else ()
-        return MetPlaces(tables, np.concatenate([self.row, counted_on]), rays, max(self.channels, others.channels))
+        own = len(self.tables)
+        goes_on = own > 0 and len(others.tables) >= own and all(map(_same, self.tables, others.tables))
+        first = 0 if goes_on else sum(len(table) for table in self.tables)
+        tables = others.tables if goes_on else self.tables + others.tables
+        wide = max(self.rows.shape[1], others.rows.shape[1])
+        rows = np.concatenate([_widened(self.rows, wide), first + _widened(others.rows, wide)])
+        weights = np.concatenate([_widened(self.weights, wide, 0.0), _widened(others.weights, wide, 0.0)])
+        return MetPlaces(tables if rays else (), rows, weights, rays, max(self.channels, others.channels))
 
     def taken(self, which: Ints) -> MetPlaces:
         """Those of some of the receivers."""
-        return MetPlaces(self.tables, self.row[which], self.rays, self.channels)
+        return MetPlaces(self.tables, self.rows[which], self.weights[which], self.rays, self.channels)
 
     def with_more(self, taken: Ints, more: MetPlaces, rows: Ints) -> MetPlaces:
         """Those of `taken`, of which `rows` are replaced by `more`."""
@@ -60,13 +75,75 @@ class MetPlaces:
         which[rows] = len(self) + np.arange(len(more))
         return self.joined(more).taken(which)
 
-    def between(self, first: int, last: int) -> NDArray[np.int32]:
-        """Those of the receivers from `first` up to `last`, (last - first, rays)."""
-        row = self.row[first:last]
-        found = np.empty((len(row), self.rays), dtype=np.int32)
+    def mixed(self, parents: Ints, weights: Floats | Singles) -> MetPlaces:
+        """Those of new receivers that have the light of some of these, (m, k), with weights (m, k)."""
+        flat = (len(parents), parents.shape[1] * self.rows.shape[1])
+        share = self.weights[parents] * weights.astype(np.float32)[:, :, None]
+        rows, share = _merged(self.rows[parents].reshape(flat), share.reshape(flat))
+        return MetPlaces(self.tables, rows, share, self.rays, self.channels)
+
+    def named(self) -> Ints:
+        """The rows that some receiver names, ascending."""
+        return np.unique(self.rows[self.weights != 0.0])
+
+    def places(self, rows: Ints) -> NDArray[np.int32]:
+        """What the rays of such rows met, (m, rays)."""
+        found = np.empty((len(rows), self.rays), dtype=np.int32)
         ends = np.cumsum([len(table) for table in self.tables])
-        among = np.searchsorted(ends, row, side="right")
+        among = np.searchsorted(ends, rows, side="right")
         for k in np.flatnonzero(np.bincount(among)) if self.tables else ():
             here = np.flatnonzero(among == k)
-            found[here] = self.tables[k].take(row[here] - (ends[k] - len(self.tables[k])), axis=0)
+            found[here] = self.tables[k].take(rows[here] - (ends[k] - len(self.tables[k])), axis=0)
         return found
+
+    def of_receivers(self, named: Ints, values: Floats) -> Floats:
+        """At receivers, (n, ...), what is known of the rows `named`, (m, ...)."""
+        return weighted(self.weights, values, self._number(named))
+
+    def errors_of_receivers(self, named: Ints, errors: Floats) -> Floats:
+        """Standard error at receivers, (n,), at most, from those of the rows `named`, (m,), which may go together."""
+        return weighted(np.abs(self.weights), errors, self._number(named))
+
+    def _number(self, named: Ints) -> Ints:
+        number: Ints = np.minimum(np.searchsorted(named, self.rows), max(len(named) - 1, 0))
+        return number
+
+
+def weighted(weights: Floats | Singles, values: Floats, which: Ints) -> Floats:
+    """Sums of weights (n, k) times the values (m, ...) that `which` (n, k) names, (n, ...)."""
+    total: Floats = np.zeros((len(which), *values.shape[1:]))
+    wide = (-1, *(1,) * (values.ndim - 1))
+    for column, weight in zip(which.T, weights.T, strict=True):
+        chosen = np.flatnonzero(weight)
+        total[chosen] += values[column[chosen]] * weight[chosen].astype(np.float64).reshape(wide)
+    return total
+
+
+def _same(one: NDArray[np.int32], other: NDArray[np.int32]) -> bool:
+    return one is other
+
+
+def _widened(values: NDArray[Any], wide: int, filling: float | None = None) -> NDArray[Any]:
+    """Rows with as many columns: more of the first one, or of one number."""
+    missing = wide - values.shape[1]
+    if missing == 0:
+        return values
+    more = np.repeat(values[:, :1], missing, axis=1) if filling is None else np.full((len(values), missing), filling)
+    return np.concatenate([values, more.astype(values.dtype)], axis=1)
+
+
+def _merged(rows: Ints, weights: Singles) -> tuple[Ints, Singles]:
+    """Rows (n, k) with weights, each named once and in order, in as few columns as all can do with."""
+    order = np.argsort(rows, axis=1, kind="stable")
+    rows, weights = np.take_along_axis(rows, order, axis=1), np.take_along_axis(weights, order, axis=1)
+    # Of a row that is named again, all the weight goes to where it is named first.
+    new = np.ones(rows.shape, dtype=bool)
+    new[:, 1:] = rows[:, 1:] != rows[:, :-1]
+    column = np.cumsum(new, axis=1) - 1
+    wide = int(column.max(initial=0)) + 1
+    merged, total = np.repeat(rows[:, :1], wide, axis=1), np.zeros((len(rows), wide), dtype=np.float32)
+    receiver = np.arange(len(rows))
+    for k in range(rows.shape[1]):
+        merged[receiver, column[:, k]] = rows[:, k]
+        total[receiver, column[:, k]] += weights[:, k]
+    return merged, total

@@ -19,6 +19,9 @@ NORMAL_CELLS = 1024
 """Shading normals closer than about 1/1024 count as one: corners of a smooth or flat surface share a value, corners on
 the two sides of a hard edge do not."""
 
+CODES_OF_VERTEX = (2 * NORMAL_CELLS + 1) ** 3
+"""Normals that are told apart at one vertex."""
+
 BORDER = 0.05
 """A vertex surely lies inside its surface when the mean way to the middles of its faces is less than this share of
 their mean distance; on a straight border of even faces it is about 0.5, and still 0.1 where two slender ones meet."""
@@ -56,6 +59,10 @@ class Receivers:
     sizes: Floats
     mesh: Ints
     of_corner: Ints
+
+    def vertices(self) -> Ints:
+        """The vertex of the faces that each is at, (n,)."""
+        return self.codes // CODES_OF_VERTEX
 
     def taken(self, which: Ints) -> Receivers:
         """Some of the receivers, without faces."""

@@ -10,6 +10,7 @@ reach from one to another.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,12 @@ class Slices:
         nothing = np.zeros((0, 3))
         return Slices(np.zeros(0, dtype=np.int64), np.zeros((0, 3), dtype=np.int64), nothing[:, None, :], nothing)
 
+    @cached_property
+    def _last(self) -> Ints:
+        """The last piece of the same triangle, (p,): rays ask for it all the time."""
+        last: Ints = np.searchsorted(self.of, self.of, side="right") - 1
+        return last
+
     def found(self, first: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
         """The pieces that points lie in.
 
@@ -63,7 +70,7 @@ class Slices:
             The same in the piece.
         """
         inside = np.concatenate([1.0 - weights.sum(axis=1, keepdims=True, dtype=np.float64), weights], axis=1)
-        low, high = first, np.searchsorted(self.of, self.of[first], side="right") - 1
+        low, high = first, self._last[first]
         while (low < high).any():
             middle = (low + high + 1) // 2
             beyond = np.einsum("mk,mk->m", self.beyond[middle], inside) > 0.0

@@ -17,8 +17,8 @@ def test_receivers_put_together_and_chosen_have_the_places_that_they_had(tables)
     one, other = tables
     which = np.array([9, 0, 6, 3, 8])
     found = MetPlaces.of(one).joined(MetPlaces.of(other)).taken(which)
-    np.testing.assert_array_equal(found.between(0, len(found)), np.concatenate([one, other])[which])
-    np.testing.assert_array_equal(found.between(1, 3), np.concatenate([one, other])[which[1:3]])
+    np.testing.assert_array_equal(found.places(found.rows[:, 0]), np.concatenate([one, other])[which])
+    np.testing.assert_array_equal(found.places(found.rows[1:3, 0]), np.concatenate([one, other])[which[1:3]])
 
 
 def test_new_receivers_take_their_own_places_among_old_ones(tables):
@@ -27,7 +27,7 @@ def test_new_receivers_take_their_own_places_among_old_ones(tables):
     expected = one[taken]
     expected[rows] = other
     found = MetPlaces.of(one).with_more(taken, MetPlaces.of(other), rows)
-    np.testing.assert_array_equal(found.between(0, len(found)), expected)
+    np.testing.assert_array_equal(found.places(found.rows[:, 0]), expected)
 
 
 def test_no_place_is_copied(tables):
@@ -41,4 +41,38 @@ def test_where_some_places_are_not_kept_none_are(tables):
     one, _ = tables
     found = MetPlaces.of(one).joined(MetPlaces.of(np.empty((2, 0), dtype=np.int32)))
     assert (len(found), found.rays, found.tables) == (8, 0, ())
-    assert found.between(0, 8).shape == (8, 0)
+    assert found.places(np.arange(8)).shape == (8, 0)
+
+
+def test_a_mean_names_the_rows_of_those_that_it_is_of(tables):
+    one, other = tables
+    both = MetPlaces.of(one).joined(MetPlaces.of(other))
+    mixed = both.mixed(np.array([[7, 2], [3, 3]]), np.array([[0.25, 0.75], [0.5, 0.5]]))
+    values = np.arange(10.0) ** 2
+    np.testing.assert_allclose(mixed.of_receivers(np.arange(10), values), [0.25 * 49 + 0.75 * 4, 9.0])
+    np.testing.assert_array_equal(mixed.named(), [2, 3, 7])
+
+
+def test_a_mean_of_means_names_each_row_once(tables):
+    one, _ = tables
+    met = MetPlaces.of(one)
+    first = met.joined(met.mixed(np.array([[0, 1], [1, 2]]), np.full((2, 2), 0.5)))
+    second = first.mixed(np.array([[6, 7]]), np.full((1, 2), 0.5))
+    np.testing.assert_array_equal(second.rows, [[0, 1, 2]])
+    np.testing.assert_allclose(second.weights, [[0.25, 0.5, 0.25]])
+
+
+def test_places_that_go_on_from_others_do_not_have_their_tables_twice(tables):
+    one, other = tables
+    met = MetPlaces.of(one)
+    more = met.mixed(np.array([[0, 5]]), np.full((1, 2), 0.5)).joined(MetPlaces.of(other))
+    found = met.joined(more)
+    assert len(found.tables) == 2
+    np.testing.assert_array_equal(found.rows[6], [0, 5])
+    np.testing.assert_array_equal(found.places(found.rows[7:, 0]), other)
+
+
+def test_errors_that_may_go_together_are_not_averaged_away(tables):
+    one, _ = tables
+    mixed = MetPlaces.of(one).mixed(np.array([[0, 1, 2]]), np.array([[0.8, 0.6, -0.4]]))
+    np.testing.assert_allclose(mixed.errors_of_receivers(np.arange(3), np.ones(3)), 1.8, rtol=1e-6)
