@@ -111,7 +111,7 @@ def _colours_at_corners(surfaces: Surfaces, faces: Faces, chosen: Ints) -> tuple
         return corner_colours(colours, texture, corners, triangle, faces.weights[chosen], areas)
 
     return (
-        of_corners(surfaces.reflectance, surfaces.reflectance_texture),
+        of_corners(*surfaces.own_colours()),
         of_corners(surfaces.emission, surfaces.emission_texture),
         None if surfaces.translucence is None else of_corners(surfaces.translucence, surfaces.translucence_texture),
     )

@@ -74,7 +74,7 @@ class SurfaceMesh:
     corner_normals : (t, 3, 3) float, unit
         World shading normal at each triangle corner; equal to the triangle's own normal where shading is flat.
     reflectance : (t, 3) float, 0..1
-        Diffuse albedo of each triangle, linear RGB.
+        Share of the light on each triangle that it sends on to others, evenly to all sides, linear RGB.
     emission : (t, 3) float, W m^-2 sr^-1
         Emitted radiance of each triangle, linear RGB; of both sides, as in Cycles, without `front_only`.
     baked : bool
@@ -103,6 +103,11 @@ class SurfaceMesh:
         Triangles whose back does not emit.
     linking : LightLinking
         Of the light that it emits.
+    own_reflectance : (t, 3) float, 0..1, or None
+        Diffuse albedo, by which its own colours show the light. None where all that it sends on is diffuse; gloss is
+        sent on as well, and not shown, as it looks different from everywhere.
+    own_reflectance_texture : Texture or None
+        Of the triangles over which it varies.
     """
 
     name: str
@@ -124,6 +129,8 @@ class SurfaceMesh:
     refraction: Floats | None = None
     front_only: NDArray[np.bool_] | None = None
     linking: LightLinking = UNLINKED
+    own_reflectance: Floats | None = None
+    own_reflectance_texture: Texture | None = None
 
     def emits(self) -> bool:
         """Whether it gives light anywhere."""
@@ -136,8 +143,15 @@ class SurfaceMesh:
 
     def without_reflectance(self) -> SurfaceMesh:
         """The same mesh, black."""
-        black = np.zeros_like(self.reflectance)
-        return replace(self, reflectance=black, reflectance_texture=None, translucence=None, translucence_texture=None)
+        return replace(
+            self,
+            reflectance=np.zeros_like(self.reflectance),
+            reflectance_texture=None,
+            own_reflectance=None,
+            own_reflectance_texture=None,
+            translucence=None,
+            translucence_texture=None,
+        )
 
     def translucent(self) -> NDArray[np.bool_]:
         """Triangles of which one side sends on light of the other, (t,)."""

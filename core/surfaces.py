@@ -46,6 +46,10 @@ class Surfaces:
         Means, where they vary.
     reflectance_texture, emission_texture : Texture or None
         How they vary over some of the triangles.
+    own_reflectance : (t, 3) float or None
+        Mean share of the light on them by which they show it; None where that is all that they send on, and
+    own_reflectance_texture : Texture or None
+        how it varies.
     translucence : (t, 3) float or None
         Mean share of the light on one side that leaves the other; None where there is none, and
     translucence_texture : Texture or None
@@ -87,6 +91,8 @@ class Surfaces:
     emission: Floats
     reflectance_texture: Texture | None
     emission_texture: Texture | None
+    own_reflectance: Floats | None
+    own_reflectance_texture: Texture | None
     translucence: Floats | None
     translucence_texture: Texture | None
     mesh_of_triangle: Ints
@@ -171,6 +177,12 @@ class Surfaces:
         return {
             chosen: self.shadow & np.isin(self.mesh_of_triangle, list(chosen)) for chosen in sets if chosen is not None
         }
+
+    def own_colours(self) -> tuple[Floats, Texture | None]:
+        """The reflectance by which triangles show the light on them, (t, 3), and how it varies."""
+        if self.own_reflectance is None:
+            return self.reflectance, self.reflectance_texture
+        return self.own_reflectance, self.own_reflectance_texture
 
     def reflectance_over(self, triangle: Ints, corners: Floats) -> Floats:
         """Mean reflectance over parts of triangles, (n, 3), whose corners have barycentric coordinates (n, 3, 3)."""
@@ -292,6 +304,7 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
     pale = joined([(mesh.reflectance_texture, k) for mesh, k in zip(scene.meshes, kept, strict=True)])
     bright = joined([(mesh.emission_texture, k) for mesh, k in zip(scene.meshes, kept, strict=True)])
     translucence, silky = _translucence(scene, kept)
+    own, own_pale = _own_reflectance(scene, kept)
     if pale is not None:
         pale = replace(pale, colours=np.clip(np.nan_to_num(pale.colours, posinf=1.0), 0.0, 1.0))
     if bright is not None:
@@ -301,6 +314,8 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
         "emission": with_means(sound_light(emission), bright),
         "reflectance_texture": pale,
         "emission_texture": bright,
+        "own_reflectance": own,
+        "own_reflectance_texture": own_pale,
         "translucence": translucence,
         "translucence_texture": silky,
         "world": sound_light(scene.world),
@@ -310,6 +325,24 @@ def _colours(scene: Scene, kept: list[Ints]) -> dict[str, Any]:
             *_light_warnings(scene),
         ),
     }
+
+
+def _own_reflectance(scene: Scene, kept: list[Ints]) -> tuple[Floats | None, Texture | None]:
+    """What meshes show of the light on all triangles, None where that is all that they send on, and how it varies."""
+    pairs = list(zip(scene.meshes, kept, strict=True))
+    if all(mesh.own_reflectance is None for mesh, _ in pairs):
+        return None, None
+    found = [
+        (mesh.reflectance, mesh.reflectance_texture)
+        if mesh.own_reflectance is None
+        else (mesh.own_reflectance, mesh.own_reflectance_texture)
+        for mesh, _ in pairs
+    ]
+    texture = joined([(varied, k) for (_, varied), k in zip(found, kept, strict=True)])
+    if texture is not None:
+        texture = replace(texture, colours=np.clip(np.nan_to_num(texture.colours, posinf=1.0), 0.0, 1.0))
+    shares = np.concatenate([share[k] for (share, _), k in zip(found, kept, strict=True)])
+    return with_means(np.clip(np.nan_to_num(shares, posinf=1.0), 0.0, 1.0), texture), texture
 
 
 def _translucence(scene: Scene, kept: list[Ints]) -> tuple[Floats | None, Texture | None]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The colours of meshes: what their materials make of each triangle, and of each small cell of those that vary."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -38,6 +38,8 @@ class Appearance:
     ----------
     reflectance, emission : (t, 3) float
     reflectance_texture, emission_texture : Texture or None
+    own_reflectance : (t, 3) float or None
+    own_reflectance_texture : Texture or None
     translucence, transmittance : (t, 3) float or None
     translucence_texture, transmittance_texture : Texture or None
     refraction : (t,) float or None
@@ -50,6 +52,8 @@ class Appearance:
     emission: Floats
     reflectance_texture: Texture | None = None
     emission_texture: Texture | None = None
+    own_reflectance: Floats | None = None
+    own_reflectance_texture: Texture | None = None
     translucence: Floats | None = None
     translucence_texture: Texture | None = None
     transmittance: Floats | None = None
@@ -61,7 +65,13 @@ class Appearance:
 
     def painted(self, reflectance: Floats) -> "Appearance":
         """The same with one reflectance (3,) all over."""
-        return replace(self, reflectance=np.broadcast_to(reflectance, self.reflectance.shape), reflectance_texture=None)
+        return replace(
+            self,
+            reflectance=np.broadcast_to(reflectance, self.reflectance.shape),
+            reflectance_texture=None,
+            own_reflectance=None,
+            own_reflectance_texture=None,
+        )
 
     def without_light(self) -> "tuple[Appearance, Floats | None]":
         """The same without emission, and the emission (t, 3) of each triangle in the mean, None where there is none."""
@@ -226,12 +236,21 @@ def appearance_of(
     refraction = np.array([surface.refraction for surface in surfaces])
     if (refraction > 1.0).any():
         colours["refraction"] = refraction[slot_of_triangle]
-    for name in ("reflectance", "emission", "translucence", "transmittance"):
-        values = [getattr(surface, "through" if name == "transmittance" else name) for surface in surfaces]
+    glossy = any(surfaces[number].is_glossy for number in np.unique(slot_of_triangle)) or (
+        evaluation is not None and evaluation.mirrored is not None
+    )
+    for name, read in _READ.items():
+        if name == "own_reflectance" and not glossy:
+            continue
+        values = [read(surface) for surface in surfaces]
         constants = np.array([np.zeros(3) if varies(value) else value for value in values])
         # That of evaluated shaders counts as diffuse reflectance.
-        known = getattr(evaluation, name, None)
-        if name in ("reflectance", "emission") or constants.any() or varies(*values) or known is not None:
+        known = None
+        if evaluation is not None and name == "reflectance":
+            known = _sent_on(evaluation, surfaces, slot_of_triangle, attributes, along)
+        elif evaluation is not None and name != "translucence":
+            known = evaluation.reflectance if name == "own_reflectance" else getattr(evaluation, name)
+        if "reflectance" in name or name == "emission" or constants.any() or varies(*values) or known is not None:
             colours[name] = constants[slot_of_triangle]
         parts = []
         if known is not None:
@@ -245,6 +264,40 @@ def appearance_of(
         if parts:
             colours[f"{name}_texture"] = _in_order(parts)
     return Appearance(**colours)
+
+
+_READ: dict[str, Callable[[Surface], Any]] = {
+    "reflectance": Surface.sent_on,
+    "own_reflectance": lambda surface: surface.reflectance,
+    "emission": lambda surface: surface.emission,
+    "translucence": lambda surface: surface.translucence,
+    "transmittance": lambda surface: surface.through,
+}
+"""Where the colours of an `Appearance` come from."""
+
+
+def _sent_on(
+    evaluation: Evaluation, surfaces: Sequence[Surface], slot: Ints, attributes: Attributes | None, along: Ints
+) -> np.ndarray:
+    """Return what others get of the light on evaluated triangles, (cells, 3) float32: what is diffuse, and gloss."""
+    triangle = evaluation.triangle
+    cells = along[triangle] ** 2
+    colours = evaluation.reflectance.copy()
+    for number in np.unique(slot[triangle]):
+        surface, own = surfaces[number], slot[triangle] == number
+        if not (surface.is_glossy or evaluation.mirrored is not None):
+            continue
+        chosen = np.repeat(own, cells)
+
+        def of_cells(value: Any, own=own) -> Any:
+            return _cells(value, attributes, triangle[own], along[triangle[own]]) if varies(value) else value
+
+        covered, mirrored = of_cells(surface.covered), of_cells(surface.mirrored)
+        if evaluation.mirrored is not None:
+            # Clear layers, which are not baked, mirror all that they keep from what is below.
+            mirrored = evaluation.mirrored[chosen] + covered
+        colours[chosen] = np.clip(colours[chosen] * (1.0 - covered) + mirrored, 0.0, 1.0)
+    return colours
 
 
 def cells_along(longest_edges: Sequence[Floats]) -> list[Ints]:

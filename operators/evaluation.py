@@ -20,6 +20,7 @@ from ..core.textures import cell_centres
 from .layers import Layers, Subdivision, carry, layers_of
 from .light_paths import as_diffuse_rays_see, as_seen_from_all_sides
 from .local_mesh import LocalMesh
+from .materials import GLOSSY
 from .scratch import bake_in, scratch_scene
 
 TEXELS_PER_CELL = 3
@@ -53,20 +54,32 @@ class Evaluation:
         Of the cells of one triangle after the other, in the order of `cell_centres`.
     transmittance : (cells, 3) float32 or None
         What goes straight through them; None where nothing does.
+    mirrored : (cells, 3) float32 or None
+        What metal and glossy shaders send on; None where there are none.
     """
 
     triangle: Ints
     reflectance: Singles
     emission: Singles
     transmittance: Singles | None = None
+    mirrored: Singles | None = None
 
     def turned_over(self, along: Ints) -> "Evaluation":
         """The same colours for triangles wound the other way, with so many cells along the edges of each, (t,)."""
         cells = along[self.triangle]
         first = np.cumsum(cells**2) - cells**2
         order = np.concatenate([begin + _mirrored(int(count)) for begin, count in zip(first, cells, strict=True)])
-        through = None if self.transmittance is None else self.transmittance[order]
-        return Evaluation(self.triangle, self.reflectance[order], self.emission[order], through)
+
+        def turned(colours: Singles | None) -> Singles | None:
+            return None if colours is None else colours[order]
+
+        return Evaluation(
+            self.triangle,
+            self.reflectance[order],
+            self.emission[order],
+            turned(self.transmittance),
+            turned(self.mirrored),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,15 +174,18 @@ def evaluate(
                 image.pixels.foreach_get(pixels)
                 return _of_cells(pixels.reshape(height, width, 4)[..., :3], corner, along[triangle])
 
-            reflectance, emission, transmittance = colours("DIFFUSE", pass_filter={"COLOR"}), colours("EMIT"), None
+            reflectance, emission = colours("DIFFUSE", pass_filter={"COLOR"}), colours("EMIT")
+            transmittance = mirrored = None
             trees = [made.node_tree for made in mesh.materials]
+            if any(_mirrors(node) for tree in trees for node in _nodes(tree)):
+                mirrored = colours("GLOSSY", pass_filter={"COLOR"})
             if any(_lets_through(node) for tree in trees for node in _nodes(tree)):
                 for tree in trees:
                     show_what_goes_through(tree)
                 transmittance = colours("EMIT")
     except (BakeError, RuntimeError) as error:
         raise NotEvaluatedError(str(error).removeprefix("Error: ").strip().rstrip(".")) from error
-    return Evaluation(triangle, reflectance, emission, transmittance)
+    return Evaluation(triangle, reflectance, emission, transmittance, mirrored)
 
 
 def _places(along: Ints) -> tuple[Ints, int, int]:
@@ -282,6 +298,13 @@ def _lets_through(node: bpy.types.Node) -> bool:
             for name, socket in sockets.items()
         )
     return node.type in _LET_THROUGH
+
+
+def _mirrors(node: bpy.types.Node) -> bool:
+    if node.type == "BSDF_PRINCIPLED":
+        metal = _socket(node, "Metallic")
+        return metal.is_linked or metal.default_value > 0.0
+    return node.type in GLOSSY
 
 
 def show_what_goes_through(tree: bpy.types.NodeTree) -> None:

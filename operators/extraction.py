@@ -502,6 +502,8 @@ class _Reader:
                 reflectance=appearance.reflectance,
                 emission=appearance.emission,
                 reflectance_texture=appearance.reflectance_texture,
+                own_reflectance=appearance.own_reflectance,
+                own_reflectance_texture=appearance.own_reflectance_texture,
                 emission_texture=appearance.emission_texture,
                 clear=appearance.clear,
                 translucence=appearance.translucence,

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..core.textures import sampled
 from .display import is_display
+from .gloss import index_at_level, mean_gloss, mean_sheen
 from .images import UnreadableImageError, read_image
 from .light_paths import FACING, mean_facing, seen_by_diffuse_rays
 from .varying import Points, Value, Varying, combined, luminance, varies
@@ -26,11 +27,16 @@ Colour = NDArray[np.float64]
 GREY = 0.8
 """Reflectance of a mesh without a material: what Blender's own default shows."""
 
+_GLOSS_WITHOUT_MATERIAL = (0.5, 1.5)
+"""Its roughness and index of refraction from Blender 5 on: those of a new Principled BSDF."""
+
 _DIFFUSE_LIKE = {
     "SUBSURFACE_SCATTERING": "scatters light below the surface",
-    "BSDF_SHEEN": "reflects at grazing angles",
     "BSDF_TOON": "is no physical shader",
 }
+GLOSSY = {"BSDF_GLOSSY": "Color", "BSDF_METALLIC": "Base Color"}
+"""Shaders that mirror, and the inputs by which they colour what they mirror."""
+
 NOT_DIFFUSE = {
     "BSDF_GLOSSY",
     "BSDF_METALLIC",
@@ -41,6 +47,8 @@ NOT_DIFFUSE = {
     "BSDF_HAIR_PRINCIPLED",
     "HOLDOUT",
 }
+_MIRRORS = "shows no diffuse light and is black itself; what it mirrors lights others, evenly from all sides"
+
 _DEEPEST_NESTING = 64
 """Node trees have no cycles that render; this only ends a walk through a broken one."""
 
@@ -67,6 +75,10 @@ class Surface:
         Whether it emits from its front alone.
     translucence : (3,) float or Varying, 0..1
         Share of the light on one side that leaves the other evenly in all directions, linear RGB.
+    mirrored : (3,) float or Varying, 0..1
+        Share of the light that gloss sends on, linear RGB; its own colours do not show it.
+    covered : float or Varying, 0..1
+        Share of what is diffuse that others do not get, as gloss lies above it.
     unread : tuple of str
         Nodes that only Blender can evaluate, in the words of its Add menu: where there is one, the colours are guesses.
     """
@@ -80,6 +92,19 @@ class Surface:
     clear: bool = False
     front_only: bool = False
     translucence: Colour | Varying = field(default_factory=lambda: np.zeros(3))
+    mirrored: Colour | Varying = field(default_factory=lambda: np.zeros(3))
+    covered: float | Varying = 0.0
+
+    @property
+    def is_glossy(self) -> bool:
+        """Whether others get other light from it than what it shows."""
+        return varies(self.mirrored, self.covered) or bool(np.any(self.mirrored) or self.covered)
+
+    def sent_on(self) -> Colour | Varying:
+        """Return the share of the light that others get."""
+        if not self.is_glossy:
+            return self.reflectance
+        return combined(_with_gloss, self.reflectance, self.mirrored, self.covered)
 
     @property
     def is_bare(self) -> bool:
@@ -90,7 +115,7 @@ class Surface:
 
     def colours(self) -> tuple[Colour | Varying, ...]:
         """Return all that may vary."""
-        return self.reflectance, self.emission, self.through, self.translucence
+        return self.reflectance, self.emission, self.through, self.translucence, self.mirrored, self.covered
 
 
 def _surface(
@@ -101,6 +126,8 @@ def _surface(
     through: object = 0.0,
     refraction: float = 1.0,
     translucence: object = 0.0,
+    mirrored: object = 0.0,
+    covered: float | Varying = 0.0,
 ) -> Surface:
     def colour(value: object) -> Colour | Varying:
         if isinstance(value, Varying):
@@ -117,6 +144,8 @@ def _surface(
         refraction,
         clear,
         translucence=colour(translucence),
+        mirrored=colour(mirrored),
+        covered=covered,
     )
 
 
@@ -129,7 +158,8 @@ def uses_nodes(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) ->
 def material_surface(material: bpy.types.Material | None) -> Surface:
     """Return what `material` does to light; None is the grey of a mesh without a material."""
     if material is None:
-        return _surface(GREY)
+        share = mean_gloss(*_GLOSS_WITHOUT_MATERIAL) if bpy.app.version >= (5, 0, 0) else 0.0
+        return _surface(GREY, mirrored=share, covered=share)
     if is_display(material):
         return _surface(GREY, notes=["it shows an earlier bake; plain grey was used instead"])
     if not uses_nodes(material):
@@ -190,6 +220,8 @@ class _Shares(NamedTuple):
     emission: Value = np.zeros(3)
     through: Value = np.zeros(3)
     translucence: Value = np.zeros(3)
+    mirrored: Value = np.zeros(3)
+    covered: Value = np.zeros(3)
 
 
 class _ShaderReader:
@@ -225,14 +257,15 @@ class _ShaderReader:
             self.notes.append("its volume is left out")
             if not _input(output, "Surface").is_linked:
                 return _surface(notes=self.notes, through=1.0)
-        reflectance, emission, through, translucence = self._shader(_input(output, "Surface"), ())
+        reflectance, emission, through, translucence, mirrored, covered = self._shader(_input(output, "Surface"), ())
         if not varies(through):
             through = np.clip(through, 0.0, 1.0)
         if not varies(emission) and np.any(emission < 0.0):
             self.notes.append("its emission is negative; it was taken for zero")
             emission = np.maximum(emission, 0.0)
         notes, unread = dict.fromkeys(self.notes), dict.fromkeys(self.unread)
-        return _surface(reflectance, emission, notes, unread, through, self.refraction, translucence)
+        covered = combined(_number, covered)
+        return _surface(reflectance, emission, notes, unread, through, self.refraction, translucence, mirrored, covered)
 
     def _shader(self, socket, groups) -> "_Shares":
         """Return what happens to light at whatever is linked to a shader socket; an open one is black."""
@@ -246,7 +279,11 @@ class _ShaderReader:
             colour, strength = self._colour(node, "Color", groups), self._value(node, "Strength", groups)
             return _Shares(emission=combined(np.multiply, colour, strength))
         if node.type == "BSDF_DIFFUSE":
+            self._tell_roughness(node, "Roughness")
             return _Shares(self._colour(node, "Color", groups))
+        if node.type == "BSDF_SHEEN":
+            share = mean_sheen(self._plain(node, "Roughness"))
+            return _Shares(combined(lambda colour: share * colour, self._colour(node, "Color", groups)))
         if node.type == "BSDF_TRANSLUCENT":
             return _Shares(translucence=self._colour(node, "Color", groups))
         if node.type == "BSDF_TRANSPARENT":
@@ -269,8 +306,12 @@ class _ShaderReader:
     def _principled(self, node, groups) -> "_Shares":
         opaque = self._share(node, "Alpha", groups)
         metal, glass = (self._share(node, name, groups) for name in ("Metallic", "Transmission Weight"))
+        mirrored = np.zeros(3)
         if varies(metal) or metal > 0.0:
-            self.notes.append("Metallic reflects no diffuse light; that part counts as black")
+            self.notes.append(f"Metallic {_MIRRORS}")
+            mirrored = combined(
+                np.multiply, self._colour(node, "Base Color", groups), combined(np.multiply, opaque, metal)
+            )
         diffuse = combined(lambda alpha, m, g: alpha * (1.0 - m) * (1.0 - g), opaque, metal, glass)
         reflectance = np.zeros(3)
         if varies(diffuse) or diffuse > 0.0:
@@ -284,7 +325,41 @@ class _ShaderReader:
         emission = np.zeros(3)
         if varies(strength) or strength != 0.0:
             emission = combined(np.multiply, self._colour(node, "Emission Color", groups), strength)
-        return _Shares(reflectance, emission, through)
+        coat = self._coat(node)
+        if np.any(coat != 1.0):
+            reflectance, emission, mirrored = (
+                combined(np.multiply, colour, coat) for colour in (reflectance, emission, mirrored)
+            )
+        self._tell_roughness(node, "Diffuse Roughness")
+        covered = combined(lambda share: self._layers(node) * share * np.ones(3), diffuse)
+        return _Shares(reflectance, emission, through, mirrored=combined(np.add, mirrored, covered), covered=covered)
+
+    def _coat(self, node) -> Colour:
+        """Return the share of light that the tint of a coat lets through to what is below, and back."""
+        weight = np.clip(self._plain(node, "Coat Weight"), 0.0, 1.0)
+        return _mixed(weight, np.ones(3), np.array(_input(node, "Coat Tint").default_value[:3]))
+
+    def _tell_roughness(self, node, identifier: str) -> None:
+        socket = next((socket for socket in node.inputs if socket.identifier == identifier), None)
+        if socket is not None and (socket.is_linked or socket.default_value > 0.0):
+            self.notes.append(f"the roughness of its diffuse reflection ({identifier}) is left out")
+
+    def _layers(self, node) -> float:
+        """Return the share that the clear layers and the sheen of a Principled BSDF mirror."""
+
+        def plain(name: str) -> float:
+            return self._plain(node, name)
+
+        index = index_at_level(plain("IOR"), plain("Specular IOR Level"))
+        passed = 1.0 - mean_gloss(plain("Roughness"), index)
+        passed *= 1.0 - plain("Coat Weight") * mean_gloss(plain("Coat Roughness"), plain("Coat IOR"))
+        passed *= 1.0 - plain("Sheen Weight") * mean_sheen(plain("Sheen Roughness"))
+        return 1.0 - passed
+
+    @staticmethod
+    def _plain(node, identifier: str) -> float:
+        """Return the number set on an input, whatever is linked to it, which is near enough for gloss."""
+        return float(_input(node, identifier).default_value)
 
     def _refract(self, node, groups) -> None:
         index = self._value(node, "IOR", groups)
@@ -295,6 +370,9 @@ class _ShaderReader:
         if node.type in _DIFFUSE_LIKE:
             self.notes.append(f"{name} {_DIFFUSE_LIKE[node.type]}; it counts as diffuse")
             return _Shares(self._colour(node, "Color", groups))
+        if node.type in GLOSSY:
+            self.notes.append(f"{name} {_MIRRORS}")
+            return _Shares(mirrored=self._colour(node, GLOSSY[node.type], groups))
         if node.type in NOT_DIFFUSE:
             self.notes.append(f"{name} reflects no diffuse light; that part counts as black")
             return _Shares()
@@ -499,6 +577,11 @@ def _mix(share: Value, first: Value, second: Value) -> Value:
 
 def _mixed(share, first, second):
     return (1.0 - share) * first + share * second
+
+
+def _with_gloss(reflectance, mirrored, covered):
+    """Return the share that others get of light on something diffuse below something that mirrors."""
+    return np.clip(reflectance * (1.0 - covered) + mirrored, 0.0, 1.0)
 
 
 def _through_glass(through, opaque, metal, glass, colour):

@@ -107,13 +107,7 @@ def curves() -> list[Any]:
     return [floor]
 
 
-WITHOUT_A_MATERIAL = (
-    "the boxes have no material, and Cycles 5.2 shows them as a Principled BSDF of the same grey with its gloss, whose "
-    "light we leave out. With a material without gloss our mean is within 0.1% of Cycles'."
-)
-
-
-@case("Instances by geometry nodes", note=WITHOUT_A_MATERIAL)
+@case("Instances by geometry nodes")
 def geometry_nodes() -> list[Any]:
     """Boxes on the vertices of a sheet above the floor, instances of a mesh that the nodes make."""
     floor = lit_room()

@@ -150,6 +150,47 @@ def half_metal() -> list[Any]:
     return [floor]
 
 
+def principled_room(**inputs: Any) -> list[Any]:
+    """Return the floor of a room of Principled BSDFs, with a table, under a lamp."""
+    floor = stage.closed_room()
+    paints = {"Left": (0.6, 0.1, 0.05), "Right": (0.1, 0.5, 0.12)}
+    for thing in [thing for thing in bpy.context.scene.objects if thing.type == "MESH"]:
+        colour = paints.get(thing.name, (0.7, 0.7, 0.7))
+        thing.data.materials[0] = stage.material(thing.name, "ShaderNodeBsdfPrincipled", Base_Color=colour)
+    wood = stage.material("Wood", "ShaderNodeBsdfPrincipled", **{"Base_Color": (0.3, 0.2, 0.1), **inputs})
+    stage.box("Table", (-0.5, -0.3, 0.4), (0.5, 0.3, 0.8), wood)
+    stage.lamp("AREA", place=(0.0, 0.0, 2.38), shape="SQUARE", size=0.6, energy=40.0)
+    return [floor]
+
+
+@case("A room of Principled BSDFs as Blender makes them, with their gloss")
+def gloss_as_made() -> list[Any]:
+    """What gloss mirrors lights the room."""
+    return principled_room()
+
+
+@case("A table of rough metal in that room")
+def metal_table() -> list[Any]:
+    """Metal is black itself and lights others."""
+    return principled_room(Base_Color=(0.8, 0.8, 0.8), Metallic=1.0, Roughness=0.4)
+
+
+@case("A wall that the camera sees otherwise, by a Light Path node")
+def seen_by_camera() -> list[Any]:
+    """What travels is what rays between diffuse surfaces see."""
+    floor = stage.room()
+    made = bpy.data.materials.new("Two Looks")
+    tree = stage.node_tree(made)
+    mix, path = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeLightPath")
+    tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+    tree.links.new(stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=(0.8, 0.1, 0.1)).outputs[0], mix.inputs[1])
+    tree.links.new(stage.shader(tree, "ShaderNodeEmission", Color=(0.1, 0.3, 0.9)).outputs[0], mix.inputs[2])
+    stage.show(tree, mix)
+    bpy.data.objects["Wall"].data.materials[0] = made
+    stage.lamp("AREA", shape="SQUARE", size=0.5)
+    return [floor]
+
+
 @case("Mix and Add Shader: a wall that is diffuse and shines a little")
 def mixed_shaders() -> list[Any]:
     """A mix of two colours, to which an emission is added."""

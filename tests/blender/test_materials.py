@@ -158,9 +158,30 @@ def test_a_glossy_shader_reflects_no_diffuse_light_and_is_named():
     assert "Glossy" in note
 
 
+def test_what_metal_and_glossy_shaders_mirror_lights_others_in_their_colours():
+    gold = (0.9, 0.6, 0.2, 1.0)
+    glossy = material_surface(node_material("Gold", "ShaderNodeBsdfAnisotropic", Color=gold))
+    assert glossy.sent_on() == pytest.approx(gold[:3], abs=1e-6)
+    metal = material_surface(principled(Base_Color=gold, Metallic=1.0))
+    assert metal.sent_on() == pytest.approx(gold[:3], abs=1e-6) and not metal.reflectance.any()
+    assert not material_surface(diffuse_material()).is_glossy
+    assert not material_surface(principled(Specular_IOR_Level=0.0)).is_glossy
+
+
+def test_a_tinted_coat_dims_what_is_below_it():
+    inputs = {"Emission_Strength": 2.0, "Coat_Weight": 0.5, "Coat_Tint": (0.2, 0.6, 1.0, 1.0)}
+    material = principled(Base_Color=(0.5, 0.5, 0.5, 1.0), Emission_Color=(1.0, 1.0, 1.0, 1.0), **inputs)
+    assert assert_surface(material, (0.3, 0.4, 0.5), (1.2, 1.6, 2.0)) == ()
+
+
+def test_a_diffuse_shader_that_is_rough_is_named():
+    (note,) = assert_surface(node_material("Clay", "ShaderNodeBsdfDiffuse", Roughness=0.5), 0.8)
+    assert "Roughness" in note
+
+
 def test_the_part_of_a_principled_shader_that_is_metal_is_named():
     (note,) = material_surface(principled(Metallic=0.5)).notes
-    assert "Metallic reflects no diffuse light" in note
+    assert "Metallic shows no diffuse light" in note
 
 
 def test_a_translucent_shader_sends_light_to_the_other_side():

@@ -10,6 +10,7 @@ import pytest
 from radiosity_bake.core.textures import mean_colours, with_means
 from radiosity_bake.operators import evaluation
 from radiosity_bake.operators.extraction import extract
+from radiosity_bake.operators.gloss import mean_gloss
 from radiosity_bake.operators.scratch import NoCyclesError
 
 from tests.blender.making import (
@@ -134,13 +135,17 @@ def by_cycles(obj, kind):
 
 
 def by_us(obj, kind):
-    """Return (c, 3) our colours of a small part of the face at each corner, and the warnings."""
+    """Return (c, 3) our colours of a small part of the face at each corner, and the warnings.
+
+    They are what it shows of the light, DIFFUSE; what others get of it, SENT; or what it emits.
+    """
     bpy.context.view_layer.update()
     extraction = extract(bpy.context, [obj])
     (target,), mesh = extraction.targets, extraction.scene.meshes[extraction.targets[0].meshes[0]]
-    texture, plain = (
-        (mesh.reflectance_texture, mesh.reflectance) if kind == "DIFFUSE" else (mesh.emission_texture, mesh.emission)
-    )
+    name = {"DIFFUSE": "own_reflectance", "SENT": "reflectance"}.get(kind, "emission")
+    if mesh.own_reflectance is None and kind == "DIFFUSE":
+        name = "reflectance"
+    texture, plain = getattr(mesh, f"{name}_texture"), getattr(mesh, name)
     corners = np.full((3, 3, 3), 0.0) + np.eye(3)[:, None, :] * 0.94 + 0.02
     corners += 0.04 * (np.eye(3)[None] - 1 / 3)
     count = len(mesh.triangles)
@@ -382,6 +387,25 @@ def test_gloss_does_not_dim_what_blender_evaluates():
     sheet.data.materials[0] = painted(noise)
     matt, _ = by_us(sheet, "DIFFUSE")
     assert glossy == pytest.approx(0.75 * matt, abs=1e-4)
+
+
+def test_others_get_the_gloss_of_what_blender_evaluates():
+    sheet = add_sheet(painted(noise, "ShaderNodeBsdfPrincipled", "Base Color", Roughness=0.5))
+    sent, _ = by_us(sheet, "SENT")
+    sheet.data.materials[0] = painted(noise)
+    matt, _ = by_us(sheet, "DIFFUSE")
+    share = mean_gloss(0.5, 1.5)
+    assert sent == pytest.approx(matt * (1.0 - share) + share, abs=1e-4)
+
+
+def test_others_get_the_colours_of_metal_that_blender_evaluates():
+    sheet = add_sheet(painted(noise, "ShaderNodeBsdfPrincipled", "Base Color", Metallic=1.0))
+    sent, _ = by_us(sheet, "SENT")
+    shown, _ = by_us(sheet, "DIFFUSE")
+    sheet.data.materials[0] = painted(noise)
+    matt, _ = by_us(sheet, "DIFFUSE")
+    # Seen head on, metal has its base colour, less what Cycles lets facets of a roughness of 0.5 hide from each other.
+    assert not shown.any() and sent == pytest.approx(matt, rel=0.1)
 
 
 def test_what_is_alpha_of_a_base_colour_stays_the_same_when_blender_evaluates_it():
