@@ -12,7 +12,7 @@ import numpy as np
 from ..core.geometry import largest_edges
 from ..core.scene import Floats, Ints, Texture
 from ..core.textures import cell_centres, with_means
-from .evaluation import Evaluation, NotEvaluatedError, Template, evaluate, read_template
+from .evaluation import Evaluation, NotEvaluatedError, Template, evaluate, left_out_of, read_template
 from .local_mesh import LocalMesh, placed
 from .materials import Surface, material_surface
 from .varying import Attributes, Points, read_attributes, varies
@@ -113,11 +113,11 @@ class Colouring:
 
         Parameters
         ----------
-        entries : sequence of (Object, LocalMesh, tuple of Material or None, (4, 4) float)
-            The original that shows a mesh, the mesh, the materials of its slots and its place.
+        entries : sequence of (Object, LocalMesh, tuple of Material or None, (4, 4) float, float)
+            The original that shows a mesh, the mesh, the materials of its slots, its place and its random number.
         """
         found = []
-        for _, local, materials, matrix in entries:
+        for _, local, materials, matrix, _ in entries:
             # Like the renderers: a face whose slot does not exist takes the last one.
             slot = np.clip(local.slots, 0, max(len(materials) - 1, 0))
             surfaces = [self._surface(material) for material in materials] or [self._surface(None)]
@@ -146,6 +146,7 @@ class Colouring:
         local: LocalMesh,
         materials: tuple[Any, ...],
         matrix: Floats,
+        random: float,
         surfaces: list[Surface],
         slot: Ints,
         along: Ints,
@@ -161,7 +162,7 @@ class Colouring:
         evaluation = None
         unread = [int(number) for number in used if surfaces[number].unread]
         if unread:
-            evaluation = self._evaluated(original, local, materials, matrix, surfaces, slot, along, unread)
+            evaluation = self._evaluated(original, local, materials, matrix, random, surfaces, slot, along, unread)
         if evaluation is not None and flipped:
             evaluation = evaluation.turned_over(along)
         # Instances of one mesh look alike.
@@ -176,6 +177,7 @@ class Colouring:
         local: LocalMesh,
         materials: tuple[Any, ...],
         matrix: Floats,
+        random: float,
         surfaces: list[Surface],
         slot: Ints,
         along: Ints,
@@ -183,11 +185,14 @@ class Colouring:
     ) -> Evaluation | None:
         """Return what Blender makes of the materials that cannot be read; None if it fails, which a note then tells."""
         template = self._templates[id(local)]
-        key = id(local), materials, along.tobytes(), template.place_of(original, matrix, [materials[k] for k in unread])
+        place = template.place_of(original, matrix, random, [materials[k] for k in unread])
+        key = id(local), materials, along.tobytes(), place
         try:
             if key not in self._evaluations:
                 wanted = np.isin(slot, unread)
-                self._evaluations[key] = evaluate(original, template, local, materials, matrix, slot, wanted, along)
+                self._evaluations[key] = evaluate(
+                    original, template, local, materials, matrix, random, slot, wanted, along
+                )
         except NotEvaluatedError as error:
             for number in unread:
                 nodes = ", ".join(surfaces[number].unread)
@@ -195,6 +200,8 @@ class Colouring:
                 self._tell(self.users_of_note, materials[number], note, original)
             return None
         for number in unread:
+            for note in left_out_of(materials[number].node_tree):
+                self._tell(self.users_of_note, materials[number], note, original)
             self._tell(self.users_of_evaluated, materials[number], ", ".join(surfaces[number].unread), original)
         return self._evaluations[key]
 

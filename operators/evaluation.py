@@ -21,6 +21,7 @@ from .layers import Layers, Subdivision, carry, layers_of
 from .light_paths import as_diffuse_rays_see, as_seen_from_all_sides
 from .local_mesh import LocalMesh
 from .materials import GLOSSY
+from .object_random import asks_for_random, with_random
 from .scratch import bake_in, scratch_scene
 
 TEXELS_PER_CELL = 3
@@ -34,7 +35,7 @@ the base colour is the better albedo."""
 
 _LET_THROUGH = {"BSDF_TRANSPARENT", "BSDF_GLASS", "BSDF_REFRACTION"}
 
-_DEPENDS_ON_PLACE = {"OBJECT_INFO", "NEW_GEOMETRY", "CAMERA", "PARTICLE_INFO", "BEVEL", "AMBIENT_OCCLUSION"}
+_DEPENDS_ON_PLACE = {"NEW_GEOMETRY", "CAMERA", "PARTICLE_INFO", "BEVEL", "AMBIENT_OCCLUSION"}
 """Nodes that may look different on another object of the same mesh."""
 
 
@@ -97,11 +98,16 @@ class Template:
     location: Floats
     size: Floats
 
-    def place_of(self, obj: bpy.types.Object, matrix: Floats, materials: Iterable[bpy.types.Material]) -> Any:
-        """Return what else than the mesh the materials may depend on: nothing, or the object and where it is."""
-        if any(_depends_on_place(node) for material in materials for node in _nodes(material.node_tree)):
-            return obj.name_full, matrix.tobytes()
-        return None
+    def place_of(
+        self, obj: bpy.types.Object, matrix: Floats, random: float, materials: Iterable[bpy.types.Material]
+    ) -> Any:
+        """Return what else than the mesh materials may depend on: the object, where it is, and its number."""
+        nodes = [node for material in materials for node in _nodes(material.node_tree)]
+        return (
+            (obj.name_full, matrix.tobytes()) if any(map(_depends_on_place, nodes)) else None,
+            (tuple(obj.color), obj.pass_index) if any(node.type == "OBJECT_INFO" for node in nodes) else None,
+            random if any(map(asks_for_random, nodes)) else None,
+        )
 
 
 def read_template(obj: bpy.types.Object) -> Template:
@@ -123,6 +129,7 @@ def evaluate(
     local: LocalMesh,
     materials: tuple[Any, ...],
     matrix: Floats,
+    random: float,
     slot: Ints,
     wanted: np.ndarray,
     along: Ints,
@@ -135,6 +142,8 @@ def evaluate(
         The original that shows the mesh.
     materials : tuple of Material or None
         Of the slots.
+    random : float, 0..1
+        What an Object Info node tells.
     slot : (t,) int
     wanted : (t,) bool
     along : (t,) int
@@ -154,7 +163,7 @@ def evaluate(
             _spread(mesh, triangle, corner, along[triangle], width, height)
             for number in range(max(len(materials), 1)):
                 known = number < len(materials) and np.any(slot[triangle] == number)
-                mesh.materials.append(_bakeable(materials[number] if known else None, image))
+                mesh.materials.append(_bakeable(materials[number] if known else None, random, image))
             scratch = _object_like(obj, mesh, matrix)
             scene.collection.objects.link(scratch)
             _look_as(scene, bpy.context.scene)
@@ -264,7 +273,7 @@ def _mirrored(along: int) -> Ints:
     return result
 
 
-def _bakeable(material: bpy.types.Material | None, image: bpy.types.Image) -> bpy.types.Material:
+def _bakeable(material: bpy.types.Material | None, random: float, image: bpy.types.Image) -> bpy.types.Material:
     """Return a copy of a material that bakes into an image, its colour not dimmed by gloss; or one that is empty."""
     if material is None:
         made = bpy.data.materials.new(_ATLAS)
@@ -283,6 +292,7 @@ def _bakeable(material: bpy.types.Material | None, image: bpy.types.Image) -> bp
         trees = list(_trees(made.node_tree))
         as_diffuse_rays_see(trees)
         as_seen_from_all_sides(trees)
+        with_random(trees, random)
     tree = made.node_tree
     target = tree.nodes.new("ShaderNodeTexImage")
     target.image = image
@@ -305,6 +315,21 @@ def _mirrors(node: bpy.types.Node) -> bool:
         metal = _socket(node, "Metallic")
         return metal.is_linked or metal.default_value > 0.0
     return node.type in GLOSSY
+
+
+def left_out_of(tree: bpy.types.NodeTree) -> list[str]:
+    """Return clauses on nodes that tell something else on a copy of an object which stands alone."""
+    return list(dict.fromkeys(clause for node in _nodes(tree) for clause in _left_out(node)))
+
+
+def _left_out(node: bpy.types.Node) -> Iterator[str]:
+    linked = {socket.identifier for socket in node.outputs if socket.is_linked}
+    if linked and (getattr(node, "from_instancer", False) or getattr(node, "attribute_type", "") == "INSTANCER"):
+        yield f"{node.bl_label} asks for the instancer, which is left out"
+    if linked and node.type == "AMBIENT_OCCLUSION":
+        yield "Ambient Occlusion sees the object alone"
+    if linked.intersection({"TEX_COORD": {"Reflection"}, "NEW_GEOMETRY": {"Incoming"}}.get(node.type, ())):
+        yield "what depends on where it is seen from counts as seen head on"
 
 
 def show_what_goes_through(tree: bpy.types.NodeTree) -> None:
@@ -405,6 +430,8 @@ def _nodes(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.Node]:
 def _depends_on_place(node: bpy.types.Node) -> bool:
     if node.type == "TEX_COORD":
         return any(socket.is_linked and socket.identifier not in {"UV", "Generated"} for socket in node.outputs)
+    if node.type == "OBJECT_INFO":
+        return any(socket.is_linked and socket.identifier == "Location" for socket in node.outputs)
     return node.type in _DEPENDS_ON_PLACE or (node.type == "ATTRIBUTE" and node.attribute_type != "GEOMETRY")
 
 

@@ -18,6 +18,7 @@ from .lamps import lamp_of
 from .layers import Layers, joined_layers, layers_of
 from .linking import light_linking, linked_objects
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
+from .object_random import object_random
 from .object_settings import Role, role_of
 from .participants import Participants, shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
@@ -235,6 +236,8 @@ class _Entry:
         Empty for none.
     makers : tuple of Object
         What makes an instance, and what it is of; or the object alone.
+    random : float, 0..1
+        That an Object Info node tells.
     """
 
     order: tuple[Any, ...]
@@ -247,6 +250,7 @@ class _Entry:
     layers: Layers | None
     light_group: str
     makers: tuple[bpy.types.Object, ...]
+    random: float
 
 
 class _Reader:
@@ -289,7 +293,7 @@ class _Reader:
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
         entries = sorted(self._entries(), key=lambda entry: entry.order)
-        colours = self._colouring.appearances([(e.original, e.local, e.materials, e.matrix) for e in entries])
+        colours = self._colouring.appearances([(e.original, e.local, e.materials, e.matrix, e.random) for e in entries])
         for entry, appearance in zip(entries, colours, strict=True):
             self._add(entry, appearance)
         self._link_lights([entry.makers for entry in entries])
@@ -392,7 +396,10 @@ class _Reader:
                 layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
                 materials = self._materials(obj, local)
                 self._colouring.read(obj, local, materials)
-                yield _Entry(order, original, owner, role, local, materials, matrix, layers, light_group, makers)
+                random = object_random(instance)
+                yield _Entry(
+                    order, original, owner, role, local, materials, matrix, layers, light_group, makers, random
+                )
         found = [lamp for lamp in sorted(lamps, key=lambda found: found[0]) if lamp[1] is not None]
         self.lamps = [lamp for _, lamp, _, _ in found if lamp is not None]
         self._groups_of_lamps = [group for _, _, group, _ in found]

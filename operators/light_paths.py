@@ -70,7 +70,7 @@ def as_diffuse_rays_see(trees: Iterable[bpy.types.NodeTree]) -> None:
         for node in list(tree.nodes):
             if node.type == "LIGHT_PATH":
                 for output in node.outputs:
-                    _fix(tree, output, seen_by_diffuse_rays(output.identifier))
+                    set_output(tree, output, seen_by_diffuse_rays(output.identifier))
 
 
 def as_seen_from_all_sides(trees: Iterable[bpy.types.NodeTree]) -> None:
@@ -82,11 +82,11 @@ def as_seen_from_all_sides(trees: Iterable[bpy.types.NodeTree]) -> None:
             for output in node.outputs:
                 value = mean_facing(node, output.identifier)
                 if value is not None:
-                    _fix(tree, output, value)
+                    set_output(tree, output, value)
 
 
-def _fix(tree: bpy.types.NodeTree, output: bpy.types.NodeSocket, value: float) -> None:
-    """Have what is linked to an output take a number instead."""
+def set_output(tree: bpy.types.NodeTree, output: bpy.types.NodeSocket, value: float) -> None:
+    """Have what is linked to an output of a copied tree take a number instead."""
     sockets = [link.to_socket for link in output.links]
     if sockets:
         constant = tree.nodes.new("ShaderNodeValue")

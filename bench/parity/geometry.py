@@ -125,6 +125,26 @@ def geometry_nodes() -> list[Any]:
     return [floor]
 
 
+@case("Instances that differ in colour, by the Random of an Object Info node")
+def random_of_instances() -> list[Any]:
+    """Pillars from red to blue, each an instance of one collection."""
+    floor = lit_room()
+    made = bpy.data.materials.new("Random")
+    tree = stage.node_tree(made)
+    info, ramp = tree.nodes.new("ShaderNodeObjectInfo"), tree.nodes.new("ShaderNodeValToRGB")
+    ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.9, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
+    tree.links.new(info.outputs["Random"], ramp.inputs[0])
+    stage.show(tree, stage.shader(tree, "ShaderNodeBsdfDiffuse", Color=ramp.outputs["Color"]))
+    pillar = stage.box("Pillar", (-0.08, -0.08, 0.02), (0.08, 0.08, 0.6), made)
+    pillars = bpy.data.collections.new("Pillars")
+    pillars.objects.link(pillar)
+    bpy.context.scene.collection.objects.unlink(pillar)
+    for number in range(6):
+        instance = stage.add(f"Instance {number}", None, (-0.75 + 0.3 * number, 0.6 * (number % 2) - 0.5, 0.0))
+        instance.instance_type, instance.instance_collection = "COLLECTION", pillars
+    return [floor]
+
+
 @case("Instances on faces, scaled by them")
 def face_instances() -> list[Any]:
     """A box on each face of a sheet, whose own faces do not render."""

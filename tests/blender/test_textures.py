@@ -377,6 +377,55 @@ def test_an_evaluated_material_looks_as_diffuse_rays_see_it():
     assert shown == pytest.approx(plain, abs=1e-5) and shown.max() > 0.1
 
 
+def random_glow():
+    """Return a material that shines as the number tells that an object or an instance has."""
+    return painted(
+        lambda tree: tree.nodes.new("ShaderNodeObjectInfo").outputs["Random"], "ShaderNodeEmission", Strength=1.0
+    )
+
+
+def test_objects_of_one_mesh_have_the_random_numbers_that_cycles_gives_them():
+    first = add_sheet(random_glow(), cells=1)
+    others = [bpy.data.objects.new(name, first.data) for name in ("Second", "Größe")]
+    for sheet in others:
+        bpy.context.scene.collection.objects.link(sheet)
+    for sheet in (first, *others):
+        ours, _ = by_us(sheet, "EMIT")
+        # To the nearest of 32 levels.
+        assert ours == pytest.approx(by_cycles(sheet, "EMIT"), abs=0.5 / 32 + 1e-5)
+
+
+def test_instances_of_one_object_have_random_numbers_of_their_own():
+    floor, sheet = add_sheet(None), add_sheet(random_glow(), cells=1)
+    box = bpy.data.collections.new("Box")
+    box.objects.link(sheet)
+    bpy.context.scene.collection.objects.unlink(sheet)
+    for number in range(4):
+        empty = bpy.data.objects.new(f"Instance {number}", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", box
+        bpy.context.scene.collection.objects.link(empty)
+    bpy.context.view_layer.update()
+    meshes = extract(bpy.context, [floor]).scene.meshes
+    shades = {round(float(mesh.emission_texture.colours[0, 0]), 3) for mesh in meshes if mesh.emission_texture}
+    assert len(meshes) == 5 and len(shades) == 4
+
+
+@pytest.mark.parametrize("kind", ["INSTANCER", "AMBIENT_OCCLUSION", "REFLECTION"])
+def test_what_a_copy_that_stands_alone_cannot_tell_is_named(kind):
+    def asked(tree):
+        if kind == "AMBIENT_OCCLUSION":
+            return tree.nodes.new("ShaderNodeAmbientOcclusion").outputs["Color"]
+        if kind == "REFLECTION":
+            return noise(tree, "Reflection")
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "INSTANCER", "tint"
+        return node.outputs["Color"]
+
+    said = {"INSTANCER": "instancer", "AMBIENT_OCCLUSION": "object alone", "REFLECTION": "head on"}
+    (warning,) = by_us(add_sheet(painted(asked), cells=1), "DIFFUSE")[1]
+    assert said[kind] in warning
+
+
 def test_what_blender_evaluates_emits_too():
     assert_as_in_cycles(painted(noise, "ShaderNodeEmission", Strength=7.0), "EMIT", SCALED * STEP)
 
