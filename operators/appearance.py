@@ -14,7 +14,8 @@ from ..core.scene import Floats, Ints, Texture
 from ..core.textures import cell_centres, with_means
 from .evaluation import Evaluation, NotEvaluatedError, Template, evaluate, left_out_of, read_template
 from .local_mesh import LocalMesh, placed
-from .materials import Surface, material_surface
+from .materials import material_surface
+from .surface import Surface
 from .varying import Attributes, Points, read_attributes, varies
 
 MOST_CELLS = 2**19

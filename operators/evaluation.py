@@ -20,9 +20,9 @@ from ..core.textures import cell_centres
 from .layers import Layers, Subdivision, carry, layers_of
 from .light_paths import as_diffuse_rays_see, as_seen_from_all_sides
 from .local_mesh import LocalMesh
-from .materials import GLOSSY
 from .object_random import asks_for_random, with_random
 from .scratch import bake_in, scratch_scene
+from .shaders import GLOSSY
 
 TEXELS_PER_CELL = 3
 """Along an edge: then the middle of a cell, a third of its way, is the middle of a texel in all of them."""

@@ -15,7 +15,8 @@ from . import display
 from .attributes import IRRADIANCE, Attributes
 from .display import Shown
 from .journal import Journal
-from .materials import GREY, NOT_DIFFUSE, material_surface, uses_nodes
+from .materials import material_surface, uses_nodes
+from .shaders import GREY, NOT_DIFFUSE
 from .varying import varies
 
 _DIFFUSE = {"BSDF_DIFFUSE", "SUBSURFACE_SCATTERING", "BSDF_SHEEN", "BSDF_TOON"}

@@ -7,7 +7,8 @@ import math
 import bpy
 import numpy as np
 import pytest
-from radiosity_bake.operators.materials import GREY, material_surface
+from radiosity_bake.operators.materials import material_surface
+from radiosity_bake.operators.shaders import GREY
 
 from tests.blender.making import (
     diffuse_material,
