@@ -2,31 +2,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene as `core` takes it: everything that renders, as plain arrays in world space, copied out of Blender."""
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 import bpy
-import numpy as np
 
 from ..core.errors import NothingToBakeError
-from ..core.scene import Floats, Lamp, LightGroup, Scene, SurfaceMesh
-from .appearance import Appearance, Colouring
-from .display import is_display
+from ..core.scene import Scene
 from .drivers import failing_drivers
-from .lamps import lamp_of
-from .layers import Layers, joined_layers, layers_of
-from .linking import light_linking, linked_objects
-from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
-from .object_random import object_random
-from .object_settings import Role, role_of
-from .participants import Participants, shown_as_rendered
+from .participants import shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
-from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, source_of
-from .targets import Part, Target, joined_glow, joined_mesh, shows_surfaces
+from .record import HIDDEN_SOURCE
+from .scene_reader import SceneReader
+from .targets import Target
+from .wanted import Reason, nothing_to_bake, skip_missing, wanted_objects
 from .world import world_light
-
-_UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,21 +60,21 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
         When none of `objects` has faces that render and can be baked.
     """
     warnings: list[str] = []
-    skipped: dict[_Reason, list[str]] = {}
-    wanted = _wanted(context.scene, objects, output, skipped)
+    skipped: dict[Reason, list[str]] = {}
+    wanted = wanted_objects(context.scene, objects, output, skipped)
     outputs = outputs_by_source()
     view_layer = context.view_layer
     with sources_shown(outputs), shown_as_rendered(context) as (depsgraph, participants):
-        reader = _Reader(depsgraph, participants, set(wanted), outputs, output)
+        reader = SceneReader(depsgraph, participants, set(wanted), outputs, output)
         with sources_in_place(outputs, view_layer):
             reader.read()
         warnings += _misplaced(reader.targets, outputs, view_layer)
         warnings += _orphaned(participants.objects.difference(wanted), outputs)
         warnings += failing_drivers(participants.everything(), (context.scene, context.scene.world))
     targets = tuple(reader.targets)
-    _skip_missing(wanted, reader, skipped)
+    skip_missing(wanted, reader, skipped)
     if not targets:
-        raise NothingToBakeError(_nothing(skipped))
+        raise NothingToBakeError(nothing_to_bake(skipped))
     warnings += [f'"{name}" was skipped: it {why.singular}' for why, names in skipped.items() for name in names]
     world = world_light(context.scene.world if view_layer.use_sky else None, context.scene.frame_current)
     warnings += reader.warnings()
@@ -102,90 +92,6 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
         context.scene.session_uid,
         view_layer.name,
     )
-
-
-@dataclass(frozen=True)
-class _Reason:
-    """Why an object cannot be baked, to follow "it" and several names."""
-
-    singular: str
-    plural: str
-
-
-_NOT_A_MESH = _Reason("is not a mesh", "are not meshes")
-_LINKED = _Reason(
-    "is linked from another file; Refined Mesh bakes it, or make it local",
-    "are linked from another file; Refined Mesh bakes them, or make them local",
-)
-_OF_LINKED_COLLECTION = _Reason(
-    "is in a collection that is linked from another file; make a library override of it to bake it",
-    "are in collections that are linked from another file; make library overrides of them to bake them",
-)
-_WITHOUT_A_MESH = _Reason(
-    "has no mesh of its own; Refined Mesh bakes it",
-    "have no meshes of their own; Refined Mesh bakes them",
-)
-_WITHOUT_FACES = _Reason("has no faces", "have no faces")
-_CLEAR = _Reason("is transparent all over", "are transparent all over")
-_NOT_RECEIVING = _Reason("does not receive light by its own settings", "do not receive light by their own settings")
-_NOT_RENDERED = _Reason("is not shown in renders", "are not shown in renders")
-
-
-def _wanted(
-    scene: bpy.types.Scene,
-    objects: Iterable[bpy.types.Object],
-    output: str,
-    skipped: dict[_Reason, list[str]],
-) -> list[bpy.types.Object]:
-    wanted = []
-    linked_collections = {collection for collection in scene.collection.children_recursive if collection.library}
-    for obj in dict.fromkeys(_that_makes_the_faces(source_of(obj)) for obj in objects):
-        if not shows_surfaces(obj):
-            skipped.setdefault(_NOT_A_MESH, []).append(obj.name)
-        elif not obj.radiosity_settings.receives:
-            skipped.setdefault(_NOT_RECEIVING, []).append(obj.name)
-        elif obj.library is not None and output == "ORIGINAL":
-            skipped.setdefault(_LINKED, []).append(obj.name)
-        elif obj.library is not None and linked_collections.intersection(obj.users_collection):
-            skipped.setdefault(_OF_LINKED_COLLECTION, []).append(obj.name)
-        elif output == "ORIGINAL" and obj.type != "MESH":
-            skipped.setdefault(_WITHOUT_A_MESH, []).append(obj.name)
-        else:
-            wanted.append(obj)
-    return wanted
-
-
-def _that_makes_the_faces(obj: bpy.types.Object) -> bpy.types.Object:
-    """Return the object whose mesh shows `obj`: of metaballs whose names differ in the number alone, the first."""
-    if obj.type != "META":
-        return obj
-    family = [other for other in bpy.data.objects if other.type == "META" and _stem(other.name) == _stem(obj.name)]
-    return min((other for other in family if set(other.users_scene) & set(obj.users_scene)), key=_number, default=obj)
-
-
-def _stem(name: str) -> str:
-    stem, _, number = name.rpartition(".")
-    return stem if number.isdigit() else name
-
-
-def _number(obj: bpy.types.Object) -> int:
-    return int(obj.name.rpartition(".")[2]) if _stem(obj.name) != obj.name else -1
-
-
-def _skip_missing(wanted: list[bpy.types.Object], reader: "_Reader", skipped: dict[_Reason, list[str]]) -> None:
-    found = {target.uid for target in reader.targets}
-    for obj in wanted:
-        if obj.session_uid not in found:
-            why = _WITHOUT_FACES if obj in reader.shown else _NOT_RENDERED
-            why = _CLEAR if obj in reader.clear else why
-            skipped.setdefault(why, []).append(obj.name)
-
-
-def _nothing(skipped: dict[_Reason, list[str]]) -> str:
-    if not skipped:
-        return "Select the meshes to bake"
-    clauses = [f"{_names(names)} {why.singular if len(names) == 1 else why.plural}" for why, names in skipped.items()]
-    return f"None of the selected objects can be baked: {', and '.join(clauses)}"
 
 
 def _misplaced(targets: list[Target], outputs: Outputs, view_layer: bpy.types.ViewLayer) -> list[str]:
@@ -213,374 +119,3 @@ def _orphaned(objects: Iterable[bpy.types.Object], outputs: Outputs) -> list[str
         for obj in sorted(objects, key=lambda obj: obj.name_full)
         if obj.radiosity.kind == HIDDEN_SOURCE and obj not in outputs
     ]
-
-
-@dataclass(frozen=True, eq=False)
-class _Entry:
-    """A mesh that the dependency graph shows.
-
-    Attributes
-    ----------
-    order : tuple
-        By which entries are sorted.
-    original : Object
-        That the mesh is of.
-    owner : Object or None
-        That is to carry its colours.
-    role : Role
-    local : LocalMesh
-    materials : tuple of Material or None
-    matrix : (4, 4) float
-    layers : Layers or None
-    light_group : str
-        Empty for none.
-    makers : tuple of Object
-        What makes an instance, and what it is of; or the object alone.
-    random : float, 0..1
-        That an Object Info node tells.
-    """
-
-    order: tuple[Any, ...]
-    original: bpy.types.Object
-    owner: bpy.types.Object | None
-    role: Role
-    local: LocalMesh
-    materials: tuple[Any, ...]
-    matrix: Floats
-    layers: Layers | None
-    light_group: str
-    makers: tuple[bpy.types.Object, ...]
-    random: float
-
-
-class _Reader:
-    """Goes once over everything that a dependency graph shows."""
-
-    def __init__(
-        self,
-        depsgraph: bpy.types.Depsgraph,
-        participants: Participants,
-        wanted: set[bpy.types.Object],
-        outputs: Outputs,
-        output: str,
-    ) -> None:
-        self._depsgraph = depsgraph
-        self._participants = participants
-        self._wanted = wanted
-        self._outputs = outputs
-        self._output = output
-        self._local_meshes: dict[int, LocalMesh | None] = {}
-        self._layers_of_mesh: dict[int, Layers] = {}
-        self._colouring = Colouring()
-        self._left_out: dict[str, None] = {}
-        self._users_of_lamp_note: dict[str, dict[str, None]] = {}
-        self.meshes: list[SurfaceMesh] = []
-        self.lamps: list[Lamp] = []
-        self._groups_of_meshes: list[str] = []
-        self._groups_of_lamps: list[str] = []
-        self._makers_of_lamps: list[tuple[bpy.types.Object, ...]] = []
-        self.targets: list[Target] = []
-        self._parts: dict[bpy.types.Object, list[Part]] = {}
-        self._matrices: dict[bpy.types.Object, Floats] = {}
-        self._unbaked_instances: dict[str, None] = {}
-        self._instanced_lamps: dict[str, None] = {}
-        self._shown_elsewhere: dict[tuple[str, str], None] = {}
-        self._hairy: dict[str, None] = {}
-        self._unreceiving: dict[tuple[str, str], None] = {}
-        self.shown: set[bpy.types.Object] = set()
-        self.clear: set[bpy.types.Object] = set()
-
-    def read(self) -> None:
-        """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
-        entries = sorted(self._entries(), key=lambda entry: entry.order)
-        colours = self._colouring.appearances([(e.original, e.local, e.materials, e.matrix, e.random) for e in entries])
-        for entry, appearance in zip(entries, colours, strict=True):
-            self._add(entry, appearance)
-        self._link_lights([entry.makers for entry in entries])
-        self.targets = [self._target(owner, parts) for owner, parts in self._parts.items()]
-
-    def light_groups(self, world: bpy.types.World | None, suns: int) -> tuple[LightGroup, ...]:
-        """Return the light groups that something which gives light is in, in the order of their names.
-
-        Parameters
-        ----------
-        suns : int
-            Lamps after those that were read, which stand for parts of the world.
-        """
-        of_world = world.lightgroup if world is not None else ""
-        groups_of_lamps = [*self._groups_of_lamps, *[of_world] * suns]
-        named = {group for group, mesh in zip(self._groups_of_meshes, self.meshes, strict=True) if mesh.emits()}
-        return tuple(
-            LightGroup(
-                name,
-                frozenset(index for index, group in enumerate(self._groups_of_meshes) if group == name),
-                frozenset(index for index, group in enumerate(groups_of_lamps) if group == name),
-                of_world == name,
-            )
-            for name in sorted(named.union(self._groups_of_lamps, [of_world]) - {""})
-        )
-
-    def warnings(self) -> list[str]:
-        """Return a sentence for everything that was left out or guessed."""
-        sentences = [
-            f'Material "{material}" of {_names(users)}: {note}'
-            for (material, note), users in self._colouring.users_of_note.items()
-        ]
-        sentences += [f"Lamp {_names(users)}: {note}" for note, users in self._users_of_lamp_note.items()]
-        if self._left_out:
-            names = _names(self._left_out, most=None)
-            sentences.append(f"{names} left out: only objects that render as meshes take part")
-        if self._hairy:
-            sentences.append(
-                f"The hair of {_names(self._hairy, most=None)} was left out: only what renders as meshes takes part"
-            )
-        sentences += [
-            f'The instances of "{name}" that "{owner}" makes will show the light of "{name}" itself; '
-            f'bake "{owner}", too, with Refined Mesh'
-            for name, owner in self._shown_elsewhere
-        ]
-        sentences += [
-            f'The instances that "{name}" makes have no mesh of their own and were not baked; Refined Mesh bakes them'
-            for name in self._unbaked_instances
-        ]
-        sentences += [
-            f'The lamps that "{name}" instances are hidden together with it; their light is in the colours'
-            for name in self._instanced_lamps
-        ]
-        sentences += [
-            f'The instances of "{name}" do not receive light and are hidden together with "{owner}"'
-            for name, owner in self._unreceiving
-        ]
-        return sentences
-
-    def evaluated(self) -> list[str]:
-        """Return a sentence for each material that Blender evaluated."""
-        return [
-            f'Material "{material}" of {_names(users)}: {nodes}'
-            for (material, nodes), users in self._colouring.users_of_evaluated.items()
-        ]
-
-    def _entries(self) -> Iterator[_Entry]:
-        lamps: list[tuple[Any, Lamp | None, str, tuple[bpy.types.Object, ...]]] = []
-        for instance in self._depsgraph.object_instances:
-            if not self._participants.include(instance):
-                continue
-            obj = instance.object
-            original = obj.original
-            if obj.type in _UNSUPPORTED:
-                self._left_out[original.name] = None
-            if _has_hair(original):
-                self._hairy[original.name] = None
-            parent = instance.parent.original if instance.is_instance else None
-            order = (
-                original.name_full,
-                parent.name_full if parent else "",
-                tuple(instance.persistent_id) if parent else (),
-            )
-            matrix = np.array(instance.matrix_world, dtype=np.float64)
-            if parent is not None and self._shows_what_is_baked(original, parent):
-                self._shown_elsewhere[(original.name, parent.name)] = None
-            role = role_of([original] if parent in (None, original) else [original, parent])
-            owner = self._owner(instance, matrix, role)
-            # As Cycles has it: what makes an instance may name the group for it.
-            light_group = original.lightgroup or (parent.lightgroup if parent else "")
-            makers = (original,) if parent is None else (parent, original)
-            if obj.type == "LIGHT":
-                lamps.append((order, self._lamp(obj, matrix) if role.seen else None, light_group, makers))
-                if owner is not None:
-                    self._instanced_lamps[owner.name] = None
-            if obj.type != "MESH":
-                continue
-            local = self._local_mesh(obj)
-            if local is not None:
-                layers = self._layers(obj) if owner is not None and self._output == "REFINED" else None
-                materials = self._materials(obj, local)
-                self._colouring.read(obj, local, materials)
-                random = object_random(instance)
-                yield _Entry(
-                    order, original, owner, role, local, materials, matrix, layers, light_group, makers, random
-                )
-        found = [lamp for lamp in sorted(lamps, key=lambda found: found[0]) if lamp[1] is not None]
-        self.lamps = [lamp for _, lamp, _, _ in found if lamp is not None]
-        self._groups_of_lamps = [group for _, _, group, _ in found]
-        self._makers_of_lamps = [makers for _, _, _, makers in found]
-
-    def _link_lights(self, makers_of_meshes: list[tuple[bpy.types.Object, ...]]) -> None:
-        """Tell all that gives light which meshes it is for."""
-        everything = {maker for makers in (*makers_of_meshes, *self._makers_of_lamps) for maker in makers}
-        linked = {obj for obj in everything if linked_objects(obj)}
-        linked.update(*(linked_objects(obj) for obj in linked))
-        if not linked:
-            return
-
-        # As Cycles has it: what makes an instance is linked for it, if it is linked at all.
-        def linked_by(makers: tuple[bpy.types.Object, ...]) -> bpy.types.Object:
-            return makers[0] if makers[0] in linked else makers[-1]
-
-        owners = [linked_by(makers) for makers in makers_of_meshes]
-        self.lamps = [
-            replace(lamp, linking=light_linking(linked_by(makers), owners))
-            for lamp, makers in zip(self.lamps, self._makers_of_lamps, strict=True)
-        ]
-        self.meshes = [
-            replace(mesh, linking=light_linking(owner, owners)) if mesh.emits() else mesh
-            for mesh, owner in zip(self.meshes, owners, strict=True)
-        ]
-
-    def _shows_what_is_baked(self, original: bpy.types.Object, parent: bpy.types.Object) -> bool:
-        """Return whether an instance that `parent` makes of `original` will show the colours that `original` gets.
-
-        Colours in place are on the mesh that is instanced. A refined mesh is in the collections of its original, while
-        objects that are instanced one by one stay the originals.
-        """
-        if original not in self._wanted or parent is original or parent in self._wanted:
-            return False
-        return self._output == "ORIGINAL" or parent.instance_type == "COLLECTION"
-
-    def _owner(
-        self, instance: bpy.types.DepsgraphObjectInstance, matrix: Floats, role: Role
-    ) -> bpy.types.Object | None:
-        """Return the object that is to carry the colours of an instance, or of an object itself; None for nobody."""
-        owner = (instance.parent if instance.is_instance else instance.object).original
-        if owner not in self._wanted:
-            return None
-        self.shown.add(owner)
-        self._matrices[owner] = np.array(instance.parent.matrix_world) if instance.is_instance else matrix
-        if self._output == "ORIGINAL" and instance.is_instance:
-            self._unbaked_instances[owner.name] = None
-            return None
-        if not role.receives:
-            if instance.is_instance and owner.radiosity_settings.receives:
-                self._unreceiving[(instance.object.original.name, owner.name)] = None
-            return None
-        return owner
-
-    def _lamp(self, obj: bpy.types.Object, matrix: Floats) -> Lamp | None:
-        lamp, notes = lamp_of(obj, matrix)
-        for note in notes:
-            self._users_of_lamp_note.setdefault(note, {})[obj.original.name] = None
-        return lamp
-
-    def _materials(self, obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
-        override = self._participants.view_layer.material_override
-        return _slot_materials(obj, local) if override is None else (override,)
-
-    def _local_mesh(self, obj: bpy.types.Object) -> LocalMesh | None:
-        key = obj.data.as_pointer()
-        if key not in self._local_meshes:
-            # Not `obj.data`: with subdivision on the graphics card that is still the coarse mesh.
-            mesh = obj.to_mesh()
-            self._local_meshes[key] = local_mesh(mesh) if mesh is not None and len(mesh.polygons) else None
-            obj.to_mesh_clear()
-        return self._local_meshes[key]
-
-    def _layers(self, obj: bpy.types.Object) -> Layers:
-        key = obj.data.as_pointer()
-        if key not in self._layers_of_mesh:
-            self._layers_of_mesh[key] = layers_of(obj, obj.to_mesh())
-            obj.to_mesh_clear()
-        return self._layers_of_mesh[key]
-
-    def _add(self, entry: _Entry, appearance: Appearance) -> None:
-        local, role, matrix = entry.local, entry.role, entry.matrix
-        if np.linalg.det(matrix[:3, :3]) < 0.0:
-            local = turned_over(local)
-        if role.reflectance is not None:
-            appearance = appearance.painted(role.reflectance)
-        glow = None
-        if not role.lights:
-            appearance, glow = appearance.without_light()
-        owner = entry.owner
-        if owner is not None and appearance.bare:
-            # Colours on it would hide what is seen through it.
-            self.clear.add(owner)
-            owner = None
-        if owner is not None:
-            part = Part(len(self.meshes), local, entry.materials, matrix, entry.layers, glow)
-            self._parts.setdefault(owner, []).append(part)
-        vertices, normals = placed(local, matrix)
-        self._groups_of_meshes.append(entry.light_group)
-        self.meshes.append(
-            SurfaceMesh(
-                name=entry.original.name,
-                vertices=vertices,
-                triangles=local.triangles,
-                corner_normals=normals,
-                reflectance=appearance.reflectance,
-                emission=appearance.emission,
-                reflectance_texture=appearance.reflectance_texture,
-                own_reflectance=appearance.own_reflectance,
-                own_reflectance_texture=appearance.own_reflectance_texture,
-                emission_texture=appearance.emission_texture,
-                clear=appearance.clear,
-                translucence=appearance.translucence,
-                translucence_texture=appearance.translucence_texture,
-                transmittance=appearance.transmittance,
-                transmittance_texture=appearance.transmittance_texture,
-                refraction=appearance.refraction,
-                front_only=appearance.front_only,
-                baked=owner is not None,
-                seen=role.seen,
-                shadow=role.shadow,
-            )
-        )
-
-    def _target(self, owner: bpy.types.Object, parts: list[Part]) -> Target:
-        matrix = self._matrices[owner]
-        # Its own mesh first, so that its slots stay as they are.
-        parts = sorted(parts, key=lambda part: not np.array_equal(part.matrix, matrix))
-        local = joined_mesh(parts, matrix)
-        materials = local.materials if len(parts) > 1 else parts[0].materials
-        return Target(
-            uid=owner.session_uid,
-            name=owner.name,
-            meshes=tuple(part.mesh for part in parts),
-            matrix=matrix,
-            shown=np.array(self._outputs.get(owner, [owner])[0].matrix_world),
-            flipped=bool(np.linalg.det(matrix[:3, :3]) < 0.0),
-            local=local,
-            fingerprint=fingerprint(owner.data),
-            same_corners=owner.type == "MESH" and _has_corners_of(owner.data, local),
-            materials=tuple(material and material.name_full for material in materials),
-            layers=joined_layers([part.layers for part in parts], [part.local for part in parts]),
-            glow=joined_glow(parts),
-        )
-
-
-def _has_hair(obj: bpy.types.Object) -> bool:
-    """Return whether particles of `obj` render as strands."""
-    return any(
-        system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in obj.particle_systems
-    )
-
-
-def _has_corners_of(mesh: bpy.types.Mesh, local: LocalMesh) -> bool:
-    corners = np.empty(len(mesh.loops), dtype=np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    return len(mesh.vertices) == len(local.vertices) and np.array_equal(corners, local.vertex_of_corner)
-
-
-def _slot_materials(obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
-    """Return the material of each index: the object's where its slot says so, else the evaluated mesh's own.
-
-    An object that was baked in place shows the display material; the ones that it remembers count.
-    """
-    materials = list(local.materials)
-    record = obj.original.radiosity
-    for index, slot in enumerate(obj.material_slots):
-        if index >= len(materials):
-            materials.append(slot.material)
-        elif slot.link == "OBJECT":
-            materials[index] = slot.material
-    if record.kind == BAKED_IN_PLACE:
-        for index, material in enumerate(materials):
-            if is_display(material):
-                materials[index] = record.slots[index].material if index < len(record.slots) else None
-    return tuple(material and material.original for material in materials)
-
-
-def _names(names: Iterable[str], most: int | None = 3) -> str:
-    """Return quoted names for a sentence, the first few of many."""
-    names = list(names)
-    shown = ", ".join(f'"{name}"' for name in names[:most])
-    return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"
