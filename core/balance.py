@@ -13,6 +13,7 @@ from .direct import Emitters, direct_light
 from .direct_light import DirectLight
 from .errors import UnsolvableError
 from .geometry import order_along_curve
+from .lit_points import LitPoints
 from .near_lamps import near_shares
 from .patches import PatchTree
 from .rows import ESCAPED, Cover, Shares
@@ -352,17 +353,8 @@ def _direct_at(
         part = order[first:last]
         at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
         keys = (elements[part, None] * count + np.arange(count)).ravel()
-        light, _ = direct_light(
-            emitters,
-            transport.rays,
-            at,
-            axis,
-            axis,
-            keys,
-            SHADOW_RAYS_PER_POINT,
-            transport.seed + 52,
-            np.repeat(mesh[part], count),
-        )
+        asked = LitPoints.of(at, axis, keys, np.repeat(mesh[part], count))
+        light, _ = direct_light(emitters, transport.rays, asked, SHADOW_RAYS_PER_POINT, transport.seed + 52)
         return light
 
     parts = transport.rays.workers.map(work, len(elements), count * SHADOW_RAYS_PER_POINT, report)

@@ -20,6 +20,7 @@ from .enclosure import enclosed_sides
 from .form_factors import above_horizon, heights_of, piece_factor
 from .lamps import lamp_light
 from .light_tree import LightTree, light_tree
+from .lit_points import LitPoints
 from .many_lights import light_of_many
 from .sampling import LATTICE_ERROR, Singles, hashed, ray_counts, sequence, triangle_lattice
 from .scene import LUMINANCE as LUMINANCE
@@ -172,30 +173,14 @@ def all_emitters(surfaces: Surfaces, lit: NDArray[np.bool_], rays: RayScene, see
 
 
 def direct_light(
-    emitters: Emitters,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
-    shadow_rays: int,
-    seed: int,
-    mesh: Ints | None = None,
+    emitters: Emitters, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
-    """Direct light at points.
+    """Direct light at n points.
 
     Parameters
     ----------
-    points, normals : (n, 3) float
-        Receivers and the axes of their hemispheres.
-    lift : (n, 3) float
-        The side of the true surface that shadow rays start on.
-    keys : (n,) int
-        Numbers of the receivers, for their sampling patterns.
     shadow_rays : int
-        Rays each receiver spreads over all emitters.
-    mesh : (n,) int or None
-        That each receiver lies on. None where no light is for some of the meshes alone.
+        Rays each point spreads over all emitters.
 
     Returns
     -------
@@ -203,66 +188,43 @@ def direct_light(
     uncertainty : (n,) float, W m^-2 sr^-1
         Standard error of its luminance, were the rays independent: 0 where every emitter is seen whole or not at all.
     """
-    if mesh is None:
-        mesh = np.zeros(len(points), dtype=np.int64)
-    arguments = (points, normals, lift, keys, shadow_rays, seed, mesh)
     scenes = rays.in_channels()
     if len(scenes) == 1:
-        return _direct_light(emitters, rays, *arguments)
-    found = [_direct_light(emitters, scene, *arguments) for scene in scenes]
+        return _direct_light(emitters, rays, at, shadow_rays, seed)
+    found = [_direct_light(emitters, scene, at, shadow_rays, seed) for scene in scenes]
     coloured = [light.in_channel(k, len(emitters.strengths)) for k, (light, _) in enumerate(found)]
     doubt: Floats = sum(share * error for share, (_, error) in zip(LUMINANCE, found, strict=True))
     return DirectLight.joined(coloured), doubt
 
 
 def _direct_light(
-    emitters: Emitters,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
-    shadow_rays: int,
-    seed: int,
-    mesh: Ints,
+    emitters: Emitters, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
     """Direct light as `direct_light` gives it, of all channels alike."""
-    by_triangles, doubt = _direct_of_linked(emitters, rays, points, normals, lift, keys, shadow_rays, seed, mesh)
+    by_triangles, doubt = _direct_of_linked(emitters, rays, at, shadow_rays, seed)
     if not emitters.lamps:
         return by_triangles, doubt
     first, luminance = len(emitters.triangle), emitters.strengths @ LUMINANCE
-    by_lamps, more = lamp_light(
-        emitters.lamps, luminance[first:], first, rays, points, normals, lift, keys, shadow_rays, seed, mesh
-    )
+    by_lamps, more = lamp_light(emitters.lamps, luminance[first:], first, rays, at, shadow_rays, seed)
     return DirectLight.joined([by_triangles, by_lamps]), np.hypot(doubt, more)
 
 
 def _direct_of_linked(
-    emitters: Emitters,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
-    shadow_rays: int,
-    seed: int,
-    mesh: Ints,
+    emitters: Emitters, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
     """What emitting triangles send to the meshes that their light is for."""
     if emitters.linking in ((), (UNLINKED,)):
-        return _direct_of_triangles(emitters, rays, points, normals, lift, keys, shadow_rays, seed)
-    count = len(points)
+        return _direct_of_triangles(emitters, rays, at, shadow_rays, seed)
+    count = len(at)
     entries, variance = [DirectLight.none(count)], np.zeros(count)
     for linking, chosen, group in emitters.linked:
         hidden_by = rays.hidden_by(linking.blockers)
         if linking.receivers is None:
-            light, doubt = _direct_of_triangles(group, hidden_by, points, normals, lift, keys, shadow_rays, seed)
+            light, doubt = _direct_of_triangles(group, hidden_by, at, shadow_rays, seed)
             rows = np.arange(count)
         else:
-            rows = np.flatnonzero(np.isin(mesh, list(linking.receivers)))
-            axes = normals[rows]
-            up = axes if lift is normals else lift[rows]
-            light, doubt = _direct_of_triangles(group, hidden_by, points[rows], axes, up, keys[rows], shadow_rays, seed)
+            rows = np.flatnonzero(np.isin(at.mesh, list(linking.receivers)))
+            light, doubt = _direct_of_triangles(group, hidden_by, at.taken(rows), shadow_rays, seed)
             light = light.renumbered(rows, count)
         if len(emitters.linked) > 1:
             light = replace(light, emitter=chosen[light.emitter].astype(np.int32))
@@ -272,17 +234,10 @@ def _direct_of_linked(
 
 
 def _direct_of_triangles(
-    emitters: Emitters,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
-    shadow_rays: int,
-    seed: int,
+    emitters: Emitters, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
     """What emitting triangles send, in batches."""
-    count = len(points)
+    count = len(at)
     if len(emitters.triangle) == 0 or count == 0:
         return DirectLight.none(count), np.zeros(count)
     size = max(1, RAYS_PER_BATCH // shadow_rays)
@@ -290,26 +245,18 @@ def _direct_of_triangles(
     if len(emitters.triangle) <= FEW_EMITTERS:
         size = max(1, min(size, FACTORS_PER_BATCH // len(emitters.triangle)))
         light = _direct_of_each
-    parts = []
-    for first in range(0, count, size):
-        part = slice(first, first + size)
-        axes = normals[part]
-        up = axes if lift is normals else lift[part]
-        parts.append(light(emitters, rays, points[part], axes, up, keys[part], shadow_rays, seed))
+    parts = [
+        light(emitters, rays, at.taken(slice(first, first + size)), shadow_rays, seed)
+        for first in range(0, count, size)
+    ]
     return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
 
 
 def _direct_of_each(
-    emitters: Emitters,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
-    shadow_rays: int,
-    seed: int,
+    emitters: Emitters, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
     """Every emitter's exact form factor times its visible share, for few emitters."""
+    points, normals, lift = at.points, at.normals, at.lift
     count = len(points)
     row, emitter = _in_sight(emitters, points, normals)
     axes, up = np.ascontiguousarray(normals.T), np.ascontiguousarray(lift.T)
@@ -319,7 +266,7 @@ def _direct_of_each(
     row, emitter, axis = row[owner], emitter[owner], axis.take(owner, axis=1)
     factor = piece_factor(pieces, axis)
     leaning = np.zeros(len(row), dtype=bool)
-    if lift is not normals:
+    if at.leans:
         # What a smooth shading normal sees below its face is dark.
         above = heights_of(pieces, up.take(row, axis=1))
         leaning = np.minimum.reduce(above) < 0.0
@@ -328,7 +275,7 @@ def _direct_of_each(
     total = np.bincount(row, weights=light, minlength=count)
     rays_of = ray_counts(shadow_rays * light / np.maximum(total, np.finfo(np.float64).tiny)[row])
     rays_of[factor == 0.0] = 0
-    pattern = (hashed(keys, 1, seed)[:, 0] * PATTERNS).astype(np.int64)
+    pattern = (hashed(at.keys, 1, seed)[:, 0] * PATTERNS).astype(np.int64)
     origins, back = rays.lifted(points, lift)
     local = pieces * rays.scale + back.T.take(row, axis=1)
     local += _off_plane(pieces[0], emitters.normals.T.take(emitter, axis=1), rays.scale)
@@ -338,12 +285,12 @@ def _direct_of_each(
         same = np.flatnonzero(rays_of == rays_each)
         # Of the same pattern in a row, for one product of matrices each.
         same = same[np.argsort(pattern[row[same]], kind="stable")]
-        at = row[same]
-        toward = _ways(flat.take(same, axis=2), pattern[at], int(rays_each), seed)
-        seen = rays.visible(origins.take(at, axis=0), toward)
+        receiver = row[same]
+        toward = _ways(flat.take(same, axis=2), pattern[receiver], int(rays_each), seed)
+        seen = rays.visible(origins.take(receiver, axis=0), toward)
         low = np.flatnonzero(leaning[same])
-        seen[low] *= np.einsum("prx,px->pr", toward[low], lift[at[low]]) > -OFFSET
-        visible[same] = _visible_share(seen, toward, normals, at)
+        seen[low] *= np.einsum("prx,px->pr", toward[low], lift[receiver[low]]) > -OFFSET
+        visible[same] = _visible_share(seen, toward, normals, receiver)
         spread[same] = spread_of_rays(seen, visible[same])
     variance = LATTICE_ERROR**2 * spread * np.maximum(rays_of, 1) ** -1.5 * light**2
     uncertainty = np.sqrt(np.bincount(row, weights=variance, minlength=count))
@@ -351,21 +298,13 @@ def _direct_of_each(
 
 
 def _direct_of_many(
-    emitters: Emitters,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
-    shadow_rays: int,
-    seed: int,
+    emitters: Emitters, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
     """What many emitters send unoccluded, times visible shares of parts of them."""
-    shifts = hashed(keys, 2, seed)
-    light, variance = [DirectLight.none(len(points))], np.zeros(len(points))
+    light, variance = [DirectLight.none(len(at))], np.zeros(len(at))
     for tree, share in emitters.trees:
         some = max(min(FEWEST_RAYS, shadow_rays), round(share * shadow_rays))
-        found, error = light_of_many(tree, rays, points, normals, lift, shifts, some)
+        found, error = light_of_many(tree, rays, at, some, seed)
         light.append(found)
         variance += error**2
     return DirectLight.joined(light), np.sqrt(variance)

@@ -479,17 +479,7 @@ def _direct(
 
         def work(first: int, last: int) -> tuple[DirectLight, Floats]:
             part = chosen[order[first:last]]
-            return direct_light(
-                emitters,
-                transport.rays,
-                receivers.points[part],
-                receivers.normals[part],
-                receivers.lift[part],
-                np.zeros(len(part), dtype=np.int64),
-                rays,
-                transport.seed + salt,
-                receivers.mesh[part],
-            )
+            return direct_light(emitters, transport.rays, receivers.lit_points(part), rays, transport.seed + salt)
 
         parts = transport.rays.workers.map(work, len(chosen), rays, lambda share: report(low + (high - low) * share))
         light = DirectLight.stacked([p[0] for p in parts]).renumbered(order, len(chosen))

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from .direct_light import DirectLight
 from .form_factors import point_to_triangle
 from .geometry import order_along_curve
+from .lit_points import LitPoints
 from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
 from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, SunLamp
 from .visibility import OFFSET, RayScene, spread_of_rays
@@ -82,15 +83,11 @@ def lamp_light(
     luminance: Floats,
     first_number: int,
     rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    keys: Ints,
+    at: LitPoints,
     shadow_rays: int,
     seed: int,
-    mesh: Ints,
 ) -> tuple[DirectLight, Floats]:
-    """Direct light of lamps at points.
+    """Direct light of lamps at n points.
 
     Parameters
     ----------
@@ -98,15 +95,9 @@ def lamp_light(
         Of the lamps' strengths.
     first_number : int
         The number of the first lamp as an emitter.
-    points, normals, lift : (n, 3) float
-        Receivers, the axes of their hemispheres, and the sides of the true surface.
-    keys : (n,) int
-        Numbers of the receivers, for their sampling patterns.
     shadow_rays : int
-        Rays each receiver spreads over all lamps. Of `FEW_LAMPS`, each that it would see gets one at least; of more,
+        Rays each point spreads over all lamps. Of `FEW_LAMPS`, each that it would see gets one at least; of more,
         each from which `STRONG` rays are due, and the others share the rest.
-    mesh : (n,) int
-        That each receiver lies on.
 
     Returns
     -------
@@ -114,38 +105,26 @@ def lamp_light(
     uncertainty : (n,) float, W m^-2 sr^-1
         Standard error of its luminance, were the rays independent.
     """
-    count = len(points)
+    count = len(at)
     size = max(1, PAIRS_AT_ONCE // len(lamps))
     if len(lamps) > FEW_LAMPS and count > size:
         parts = [
-            lamp_light(
-                lamps,
-                luminance,
-                first_number,
-                rays,
-                points[k : k + size],
-                normals[k : k + size],
-                lift[k : k + size],
-                keys[k : k + size],
-                shadow_rays,
-                seed,
-                mesh[k : k + size],
-            )
+            lamp_light(lamps, luminance, first_number, rays, at.taken(slice(k, k + size)), shadow_rays, seed)
             for k in range(0, count, size)
         ]
         return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
-    shifts = hashed(keys, 2, seed)
-    whole = unoccluded_of_all(lamps, points, normals)
+    shifts = hashed(at.keys, 2, seed)
+    whole = unoccluded_of_all(lamps, at.points, at.normals)
     for arriving, lamp in zip(whole, lamps, strict=True):
         if lamp.linking.receivers is not None:
-            arriving[~np.isin(mesh, list(lamp.linking.receivers))] = 0.0
+            arriving[~np.isin(at.mesh, list(lamp.linking.receivers))] = 0.0
     bright = whole * luminance[:, None]
     total = np.maximum(bright.sum(axis=0), DARK)
     entries, variance = [DirectLight.none(count)], np.zeros(count)
     if len(lamps) > FEW_LAMPS:
         weak = shadow_rays * bright < STRONG * total
         drawn = _drawn(lamps, np.where(weak, bright, 0.0), shadow_rays / total, shifts[:, 0])
-        light, variance = _light_of_drawn(lamps, luminance, first_number, rays, points, normals, lift, shifts, drawn)
+        light, variance = _light_of_drawn(lamps, luminance, first_number, rays, at, shifts, drawn)
         entries.append(light)
         whole[weak] = 0.0
     wanted = ray_counts(shadow_rays * bright / total)
@@ -158,10 +137,10 @@ def lamp_light(
             same = np.flatnonzero(rays_of == rays_each)
             size = PLACES_AT_ONCE // int(rays_each)
             for part in (same[k : k + size] for k in range(0, len(same), size)):
-                at = some[part]
-                ways = _ways(lamp, points[at], int(rays_each), shifts[at])
+                there = at.taken(some[part])
+                ways = _ways(lamp, there.points, int(rays_each), shifts[some[part]])
                 hidden_by = rays.hidden_by(lamp.linking.blockers)
-                visible[part], spread[part] = _visible_share(lamp, hidden_by, points[at], normals[at], lift[at], ways)
+                visible[part], spread[part] = _visible_share(lamp, hidden_by, there, ways)
         doubt = spread * rays_of**-1.5
         variance[some] += LATTICE_ERROR**2 * doubt * bright[number, some] ** 2
         emitter = np.full(len(some), first_number + number)
@@ -220,43 +199,42 @@ def _light_of_drawn(
     luminance: Floats,
     first_number: int,
     rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
+    at: LitPoints,
     shifts: Floats,
     drawn: _Draw,
 ) -> tuple[DirectLight, Floats]:
     """What gets through along the rays to weak lamps, and the variance of its luminance, (n,)."""
-    count = len(points)
-    at = drawn.receiver
-    number = np.arange(len(at)) - np.searchsorted(at, at)
-    square = np.mod(shifts[at] + number[:, None] * [GOLDEN, GOLDEN * GOLDEN], 1.0)
-    visible = np.ones(len(at))
+    count = len(at)
+    receiver = drawn.receiver
+    number = np.arange(len(receiver)) - np.searchsorted(receiver, receiver)
+    square = np.mod(shifts[receiver] + number[:, None] * [GOLDEN, GOLDEN * GOLDEN], 1.0)
+    visible = np.ones(len(receiver))
     even = _even_points(lamps)
     simple = np.zeros(len(lamps), dtype=bool)
     simple[even.lamp] = [lamps[k].shadow and lamps[k].linking.blockers is None for k in even.lamp]
     place = np.full(len(lamps), -1)
     place[even.lamp] = np.arange(len(even.lamp))
     ask = np.flatnonzero(simple[drawn.lamp])
-    ways, facing = _ways_to_points(even.taken(place[drawn.lamp[ask]]), points[at[ask]], square[ask])
-    ways = _raised(ways, normals[at[ask]])
-    origins, back = rays.lifted(points[at[ask]], lift[at[ask]])
+    there = at.taken(receiver[ask])
+    ways, facing = _ways_to_points(even.taken(place[drawn.lamp[ask]]), there.points, square[ask])
+    ways = _raised(ways, there.normals)
+    origins, back = rays.lifted(there.points, there.lift)
     local = ways * rays.scale + back + OFFSET * facing
-    above = np.einsum("rx,rx->r", local, lift[at[ask]]) > -OFFSET
+    above = np.einsum("rx,rx->r", local, there.lift) > -OFFSET
     visible[ask] = above * rays.visible(origins, local.astype(np.float32)[:, None])[:, 0]
     for which in np.unique(drawn.lamp[~simple[drawn.lamp]]):
         lamp = lamps[which]
         some = np.flatnonzero(drawn.lamp == which) if lamp.shadow else np.zeros(0, dtype=np.int64)
-        there = at[some]
-        ways = _raised(_ways(lamp, points[there], 1, square[some])[:, 0], normals[there])[:, None]
+        there = at.taken(receiver[some])
+        ways = _raised(_ways(lamp, there.points, 1, square[some])[:, 0], there.normals)[:, None]
         hidden_by = rays.hidden_by(lamp.linking.blockers)
-        visible[some], _ = _visible_share(lamp, hidden_by, points[there], normals[there], lift[there], ways)
-    seen = np.bincount(at, weights=visible, minlength=count)
-    asked = np.maximum(np.bincount(at, minlength=count), 1)
+        visible[some], _ = _visible_share(lamp, hidden_by, there, ways)
+    seen = np.bincount(receiver, weights=visible, minlength=count)
+    asked = np.maximum(np.bincount(receiver, minlength=count), 1)
     share = seen / asked
-    light = np.bincount(at, weights=drawn.light, minlength=count)
+    light = np.bincount(receiver, weights=drawn.light, minlength=count)
     weight = drawn.light * visible / luminance[drawn.lamp]
-    return DirectLight.of(count, at, first_number + drawn.lamp, weight), light**2 * share * (1.0 - share) / asked
+    return DirectLight.of(count, receiver, first_number + drawn.lamp, weight), light**2 * share * (1.0 - share) / asked
 
 
 def _raised(ways: Floats, normals: Floats) -> Floats:
@@ -483,9 +461,7 @@ def _in_cone(cone: Cone, directions: Floats) -> Floats:
     return share
 
 
-def _visible_share(
-    lamp: Lamp, rays: RayScene, points: Floats, normals: Floats, lift: Floats, ways: Floats
-) -> tuple[Floats, Floats]:
+def _visible_share(lamp: Lamp, rays: RayScene, at: LitPoints, ways: Floats) -> tuple[Floats, Floats]:
     """Share of a lamp's light that comes through, by rays to places of it, and the variance of the rays, both (n,).
 
     Parameters
@@ -493,17 +469,17 @@ def _visible_share(
     ways : (n, r, 3) float
         To the places.
     """
-    facing = _shapes_of(lamp, points).normals
-    origins, back = rays.lifted(points, lift)
+    facing = _shapes_of(lamp, at.points).normals
+    origins, back = rays.lifted(at.points, at.lift)
     if isinstance(lamp, SunLamp):
         local = ways * (BEYOND / np.linalg.norm(ways, axis=2, keepdims=True))
     else:
         # Off the lamp, which may lie in a ceiling's plane.
         local = ways * rays.scale + (back + OFFSET * facing)[:, None]
     toward: Singles = local.astype(np.float32)
-    kernel = _kernel(lamp, facing, normals, ways)
+    kernel = _kernel(lamp, facing, at.normals, ways)
     # What a smooth shading normal sees below its face is dark.
-    above = np.einsum("nrx,nx->nr", local, lift) > -OFFSET
+    above = np.einsum("nrx,nx->nr", local, at.lift) > -OFFSET
     ask = np.flatnonzero((above & (kernel > 0.0)).any(axis=1))
     arrives = rays.visible(origins[ask], toward[ask])
     seen = above.astype(arrives.dtype)

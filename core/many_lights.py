@@ -18,7 +18,8 @@ from .direct_light import DirectLight
 from .form_factors import above_horizon, heights_of, piece_factor
 from .light_cut import GRAZING, Cut, cut
 from .light_tree import NORMALS_WEIGHT, LightTree, halved
-from .sampling import GOLDEN, LATTICE_ERROR, Singles
+from .lit_points import LitPoints
+from .sampling import GOLDEN, LATTICE_ERROR, Singles, hashed
 from .scene import Floats, Ints
 from .visibility import OFFSET, RayScene
 
@@ -75,23 +76,10 @@ class _Places:
 
 
 def light_of_many(
-    tree: LightTree,
-    rays: RayScene,
-    points: Floats,
-    normals: Floats,
-    lift: Floats,
-    shifts: Floats,
-    shadow_rays: int,
+    tree: LightTree, rays: RayScene, at: LitPoints, shadow_rays: int, seed: int
 ) -> tuple[DirectLight, Floats]:
-    """Direct light of the lights of a tree, and the standard error of its luminance (n,).
-
-    Parameters
-    ----------
-    points, normals, lift : (n, 3) float
-        Receivers, the axes of their hemispheres, and the sides of the true surface.
-    shifts : (n, 2) float, 0..1
-        Of each receiver's sampling pattern.
-    """
+    """Direct light of the lights of a tree at n points, and the standard error of its luminance (n,)."""
+    points, normals, lift, shifts = at.points, at.normals, at.lift, hashed(at.keys, 2, seed)
     entries, uncertainty = [DirectLight.none(len(points))], np.zeros(len(points))
     if len(tree.emitter) <= MOST_EACH:
         size = max(1, PAIRS_AT_ONCE // len(tree.emitter))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .geometry import largest_edges, lengths, normalized, side_normals
+from .lit_points import LitPoints
 from .scene import Floats, Ints
 from .subdivision import Faces
 from .surfaces import Surfaces
@@ -63,6 +64,11 @@ class Receivers:
     def vertices(self) -> Ints:
         """The vertex of the faces that each is at, (n,)."""
         return self.codes // CODES_OF_VERTEX
+
+    def lit_points(self, which: Ints | slice) -> LitPoints:
+        """Some of the receivers as points that get light, all with the same sampling pattern."""
+        points, mesh = self.points[which], self.mesh[which]
+        return LitPoints(points, self.normals[which], self.lift[which], np.zeros(len(mesh), dtype=np.int64), mesh)
 
     def taken(self, which: Ints) -> Receivers:
         """Some of the receivers, without faces."""

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light from emitters: exact where they are seen whole, right in the mean where in part, nothing where hidden."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct import all_emitters, direct_light
+from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.sampling import LATTICE_ERROR, triangle_lattice
 from radiosity_bake.core.scene import Scene, surface_mesh
@@ -29,7 +32,8 @@ def direct(meshes, points, normals=UP, rays=16, seed=0, lift=None):
     points = np.atleast_2d(np.asarray(points, dtype=float))
     normals = np.broadcast_to(np.asarray(normals, dtype=float), points.shape)
     lift = normals if lift is None else np.broadcast_to(np.asarray(lift, dtype=float), points.shape)
-    light, uncertainty = direct_light(emitters, ray_scene, points, normals, lift, np.arange(len(points)), rays, seed)
+    at = replace(LitPoints.of(points, normals), lift=lift)
+    light, uncertainty = direct_light(emitters, ray_scene, at, rays, seed)
     return light.irradiance(emitters.radiance), uncertainty
 
 

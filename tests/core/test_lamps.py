@@ -11,6 +11,7 @@ from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct import all_emitters, direct_light
 from radiosity_bake.core.errors import NoLightError
 from radiosity_bake.core.lamps import FEW_LAMPS, PLACES, unoccluded, unoccluded_of_all
+from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.relight import ChangedSceneError, relight
 from radiosity_bake.core.sampling import LATTICE_ERROR
@@ -53,7 +54,7 @@ def direct(meshes, lamps, points, rays=64, normal=UP, seed=0):
     emitters = all_emitters(surfaces, lit_sides(surfaces, ray_scene, 0), ray_scene, 0)
     points = np.atleast_2d(np.asarray(points, dtype=float))
     normals = np.broadcast_to(np.asarray(normal, dtype=float), points.shape)
-    light, doubt = direct_light(emitters, ray_scene, points, normals, normals, np.arange(len(points)), rays, seed)
+    light, doubt = direct_light(emitters, ray_scene, LitPoints.of(points, normals), rays, seed)
     return light.irradiance(emitters.strengths), doubt
 
 

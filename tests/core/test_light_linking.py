@@ -9,6 +9,7 @@ import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct import all_emitters, direct_light
 from radiosity_bake.core.lamps import FEW_LAMPS
+from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.relight import ChangedSceneError, relight
 from radiosity_bake.core.scene import LightLinking, PointLamp, Scene
 from radiosity_bake.core.settings import BakeSettings
@@ -52,8 +53,9 @@ def direct_on_floor(scene, points, mesh=ON_FLOOR):
         surfaces.points, surfaces.triangles, 1, surfaces.seen, surfaces.shadow, blockers=surfaces.blockers()
     )
     emitters = all_emitters(surfaces, np.ones((len(surfaces.closed), 2), dtype=bool), rays, 0)
-    up, number = np.tile([0.0, 0.0, 1.0], (len(points), 1)), np.arange(len(points))
-    light, _ = direct_light(emitters, rays, points, up, up, number, 64, 0, np.full(len(points), mesh))
+    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    at = LitPoints.of(points, up, mesh=np.full(len(points), mesh))
+    light, _ = direct_light(emitters, rays, at, 64, 0)
     return light.irradiance(emitters.strengths)[:, 0]
 
 

@@ -11,6 +11,7 @@ from radiosity_bake.core.direct import LUMINANCE, all_emitters, direct_light
 from radiosity_bake.core.form_factors import point_to_triangle
 from radiosity_bake.core.light_cut import cut
 from radiosity_bake.core.light_tree import halved, light_tree
+from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.surfaces import join
@@ -129,7 +130,7 @@ def test_many_lights_give_the_light_of_each_where_nothing_hides_them(most, monke
     points, normals = points[~inside], normals[~inside]
     # Above the floor nothing but the bulb itself is there to hide it; what is below the floor's plane is not asked for.
     up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    light, uncertainty = direct_light(emitters, rays, points, up, up, np.arange(len(points)), 16, 0)
+    light, uncertainty = direct_light(emitters, rays, LitPoints.of(points, up), 16, 0)
     found = light.irradiance(emitters.radiance) @ LUMINANCE
     truth = exact_light(emitters, points, up)
     # A convex bulb is seen whole: no ray decides anything, and what is left is the formula of distant lights.
@@ -150,7 +151,7 @@ def test_many_lights_behind_a_sheet_are_right_in_the_mean(most, monkeypatch):
     up = np.tile([0.0, 0.0, 1.0], (1000, 1))
 
     def found(shadow_rays):
-        light, uncertainty = direct_light(emitters, rays, points, up, up, np.arange(1000), shadow_rays, 0)
+        light, uncertainty = direct_light(emitters, rays, LitPoints.of(points, up), shadow_rays, 0)
         return light.irradiance(emitters.radiance) @ LUMINANCE, uncertainty
 
     few, stated = found(24)

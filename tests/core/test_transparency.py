@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct import all_emitters, direct_light
+from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.relight import ChangedSceneError, relight, shape_of
 from radiosity_bake.core.scene import PointLamp, Scene, Texture, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
@@ -95,7 +96,7 @@ def test_behind_a_curtain_nothing_is_in_doubt_that_asks_for_more_shadow_rays():
         rays = RayScene(surfaces.points, surfaces.triangles, 1, transmittance=surfaces.transmittance)
         emitters = all_emitters(surfaces, np.ones((len(surfaces.closed), 2), bool), rays, 0)
         points, up = np.array([[1.0, 1.0, 0.0], [-0.12, 1.0, 0.0]]), np.array([[0.0, 0.0, 1.0]] * 2)
-        return direct_light(emitters, rays, points, up, up, np.arange(2), 64, 0)[1]
+        return direct_light(emitters, rays, LitPoints.of(points, up), 64, 0)[1]
 
     np.testing.assert_allclose(doubt(sheet(0.5)), 0.0, atol=1e-12)
     assert (doubt(replace(sheet(0.0, size=1.0), transmittance=None)) > 0.01).any()
