@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from . import refinement
 from .balance import balance_of, direct_on_patches
+from .bright_places import BrightPlaces, bright_places
 from .cells import Cells, Radiance
 from .checks import check_places, receivers_of_checks
 from .clock import Clock
@@ -258,12 +259,14 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     most_vertices = max(memory - taken, int(LEAST_VERTICES_SHARE * memory)) // per_vertex
 
     per_receiver = effort.gather
+    bright: BrightPlaces | None = None
 
     def gather_at(places: Receivers, mixture: Mixture | None = None) -> Gathered:
-        return gather(transport, cells, radiance, emitters, places, per_receiver, finest, most_kept, gathering, mixture)
+        into = per_receiver, finest, most_kept, gathering, mixture, bright
+        return gather(transport, cells, radiance, emitters, places, *into)
 
     def indirect_at(places: Receivers) -> Gathered:
-        return gather_indirect(transport, cells, radiance, places, per_receiver, finest, most_kept, gathering)
+        return gather_indirect(transport, cells, radiance, places, per_receiver, finest, most_kept, gathering, bright)
 
     def indirect_of_first(places: Receivers) -> Gathered:
         return gather_sparsely(places, indirect_at, SPLIT_FROM * finest, effort.tolerance)
@@ -273,14 +276,18 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         return with_direct(transport, emitters, places, per_receiver, gathering, indirect)
 
     def light_up_first(faces: Faces, share: Floats) -> Lit:
-        nonlocal per_receiver
-        first = light_up(surfaces, lit, faces, share, gather_first)
+        nonlocal per_receiver, bright
+        first, aimed = light_up(surfaces, lit, faces, share, gather_first), False
         while True:
             noise, count = first.noise(surfaces), len(first.places.points)
             enough = enough_rays(per_receiver, effort.gather.hemisphere, noise, count, most_kept)
             if enough is per_receiver:
                 return first
-            per_receiver = enough
+            if not aimed:
+                bright = bright_places(cells, balance, light.solution, light.seen, surfaces)
+            if aimed or bright is None:
+                per_receiver = enough
+            aimed = True
             first = replace(first, gathered=first.gathered.with_indirect(indirect_of_first(first.places)))
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:

@@ -71,6 +71,8 @@ class Cells:
     element : (2 * cells + twins + copies,) int
         The element, or twin, that each place lies on.
     unlit : (2 * cells + twins + copies,) bool
+    reach : (2 * cells,) float32, the ray library's units
+        Rays shorter than that see another place than the one that they met.
     copied : (copies,) int
         The place that each copy is one of; copies are the last places.
     """
@@ -121,7 +123,7 @@ class Cells:
         element = (2 * tree.patch[leaf][:, None] + np.arange(2)).ravel()
         twin = cover.twin[element]
         self.copied: Ints = np.flatnonzero(twin >= 0)
-        self._reach = np.where(twin >= 0, cover.reach[element], np.float32(0.0))
+        self.reach = np.where(twin >= 0, cover.reach[element], np.float32(0.0))
         self._shortest_reach = np.float32(shortest_reach)
         self._twin = (len(element) + twin - cover.first_twin).astype(np.int32)
         self._copy = np.zeros(len(element), dtype=np.int32)
@@ -165,7 +167,7 @@ class Cells:
         if found.triangle.min(initial=0) < 0:
             place[found.triangle < 0] = ESCAPED
         if len(self.copied):
-            short = np.flatnonzero((found.distance < self._reach[np.maximum(place, 0)]) & (place >= 0))
+            short = np.flatnonzero((found.distance < self.reach[np.maximum(place, 0)]) & (place >= 0))
             thin = found.distance[short] < self._shortest_reach
             place[short] = np.where(thin, self._twin[place[short]], self._copy[place[short]])
         return place

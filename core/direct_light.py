@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .sampling import Singles
 from .scene import Floats, Ints
 
 
@@ -23,17 +24,17 @@ class DirectLight:
     receiver, emitter : (p,) int32
         There may be several entries for a pair; all of a receiver's are in the order they were added in. Of k emitters,
         number e + (c + 1) k stands for what emitter e sends in channel c alone.
-    weight : (p,) float
+    weight : (p,) float or float32
         Irradiance over pi for a radiance of 1: form factor times visible share, over the chance to be drawn.
     """
 
     count: int
     receiver: NDArray[np.int32]
     emitter: NDArray[np.int32]
-    weight: Floats
+    weight: Floats | Singles
 
     @staticmethod
-    def of(count: int, receiver: Ints, emitter: Ints, weight: Floats) -> DirectLight:
+    def of(count: int, receiver: Ints, emitter: Ints, weight: Floats | Singles) -> DirectLight:
         """Make entries of those whose weight is not zero."""
         some = np.flatnonzero(weight)
         return DirectLight(
@@ -97,7 +98,7 @@ class DirectLight:
         place[taken[ours]] = np.flatnonzero(ours)
         return DirectLight.joined([self.renumbered(place, len(taken)), more.renumbered(rows, len(taken))])
 
-    def irradiance(self, radiance: Floats) -> Floats:
+    def irradiance(self, radiance: Floats | Singles) -> Floats:
         """Irradiance over pi of each receiver, (count, 3), W m^-2 sr^-1.
 
         Parameters

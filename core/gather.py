@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .aimed_light import AimedLight
+from .bright_places import BrightPlaces, aimed_light, most_of_aimed
 from .cells import BELOW, Cells, Radiance
 from .direct import LUMINANCE, Emitters, direct_light
 from .direct_light import DirectLight
 from .geometry import order_along_curve
-from .met_places import MetPlaces, weighted
+from .met_places import MetPlaces, MetTable, weighted
 from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP, ESCAPED
 from .sampling import Singles, even_chances, frames, hemisphere_lattice
@@ -129,12 +131,12 @@ class Gathered:
     @staticmethod
     def none(rays: int) -> Gathered:
         """At no receiver."""
-        return Gathered.without_light(0, MetPlaces.of(np.zeros((0, rays), np.int32)), hidden=False)
+        return Gathered.without_light(0, MetPlaces.of(MetTable.of(np.zeros((0, rays), np.int32))), hidden=False)
 
     @staticmethod
     def dark(count: int, rays: int) -> Gathered:
         """At so many receivers that see nothing."""
-        table = np.full((1, rays), BELOW, dtype=np.int32)
+        table = MetTable.of(np.full((1, rays), BELOW, dtype=np.int32))
         return Gathered.without_light(count, MetPlaces.of_rows((table,), np.zeros(count, np.int64), rays), hidden=True)
 
     @staticmethod
@@ -246,6 +248,7 @@ def gather(
     most_kept: int,
     report: Callable[[float], None],
     mixture: Mixture | None = None,
+    bright: BrightPlaces | None = None,
 ) -> Gathered:
     """Gather light at receivers: emitters by form factor and shadow rays, all else by rays that look up `radiance`.
 
@@ -257,11 +260,13 @@ def gather(
         Size that faces may be split down to: what covers a receiver from farther off than theirs leaves it a view.
     most_kept : int
         What rays met is kept while there are no more of them.
+    bright : BrightPlaces or None
+        To be sent rays of their own.
     """
     if len(receivers.points) == 0:
         return Gathered.none(counts.hemisphere * len(transport.rays.in_channels()))
     asked = receivers if mixture is None else receivers.taken(mixture.others(len(receivers.points)))
-    indirect = gather_indirect(transport, cells, radiance, asked, counts, finest, most_kept, report)
+    indirect = gather_indirect(transport, cells, radiance, asked, counts, finest, most_kept, report, bright)
     if mixture is not None:
         indirect = mixture.with_others(indirect)
     return with_direct(transport, emitters, receivers, counts, report, indirect)
@@ -290,6 +295,7 @@ def gather_indirect(
     finest: float,
     most_kept: int,
     report: Callable[[float], None],
+    bright: BrightPlaces | None = None,
 ) -> Gathered:
     """The same, but no direct light."""
     total, scenes = len(receivers.points), transport.rays.in_channels()
@@ -297,7 +303,8 @@ def gather_indirect(
     if total == 0:
         return Gathered.none(each)
     pattern = hemisphere_lattice(counts.hemisphere, transport.seed + 101)
-    kept = np.empty((total, each if total * each <= most_kept else 0), dtype=np.int32)
+    room = each + (most_of_aimed(counts.hemisphere) if bright is not None else 0)
+    kept = np.empty((total, each if total * room <= most_kept else 0), dtype=np.int32)
 
     def places_met(found: Hits, below: NDArray[np.bool_] | slice) -> NDArray[np.int32]:
         places = cells.places(found)
@@ -307,25 +314,37 @@ def gather_indirect(
         places[below] = BELOW
         return places.reshape(-1, counts.hemisphere)
 
-    def indirect(first: int, last: int) -> tuple[Floats, Floats, Floats, NDArray[np.bool_], NDArray[np.bool_]]:
+    def indirect(
+        first: int, last: int
+    ) -> tuple[Floats, Floats, Floats, NDArray[np.bool_], NDArray[np.bool_], AimedLight]:
         part = slice(first, last)
         looks = [_looked(transport, receivers, part, pattern, rays) for rays in scenes]
         places = np.concatenate([places_met(*look) for look in looks], axis=1)
-        means, noise, valid = _mean_seen(radiance, places, len(scenes))
-        # What covers a place is opaque: any channel tells.
         found, _ = looks[0]
+        aimed = AimedLight.none(len(places))
+        if bright is not None:
+            at = receivers.lit_points(part)
+            aimed = aimed_light(bright, transport.rays, at, found, places, transport.seed + 103)
+            places[bright.of_place[places] >= 0] = BELOW
+        means, difference, valid = _mean_seen(radiance, places, len(scenes))
+        # As the hemisphere's rays, which count if they are valid.
+        aimed = aimed.weighted(np.where(valid < LEAST_VALID_SHARE, 0.0, 1.0 / np.maximum(valid, LEAST_VALID_SHARE)))
+        more, doubt = aimed.irradiance(radiance.values[:, :3])
+        means, noise = means + more, np.abs(difference + doubt)
+        # What covers a place is opaque: any channel tells.
         distance = found.distance.reshape(-1, counts.hemisphere)
         in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
         hidden = _covered(transport, receivers.sizes[part], finest, distance, in_plane) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
         touching = _touching(transport, receivers.inward[part], finest, distance) & ~hidden
         free: Floats = distance.min(axis=1).astype(np.float64) / transport.rays.scale
-        return means, noise, free, hidden, touching
+        return means, noise, free, hidden, touching, aimed
 
     parts = transport.rays.workers.map(indirect, total, counts.hemisphere, lambda share: report(0.7 * share))
     means, noise, free = (np.concatenate([p[k] for p in parts]) for k in (0, 1, 2))
     hidden, touching = (np.concatenate([p[k] for p in parts]) for k in (3, 4))
-    places = MetPlaces.of(kept, len(scenes))
+    aimed = AimedLight.stacked([p[5] for p in parts]) if kept.shape[1] else AimedLight.none(total)
+    places = MetPlaces.of(MetTable(kept, aimed), len(scenes))
     return Gathered(means, DirectLight.none(total), np.zeros((total, 3)), noise, hidden, touching, free, places)
 
 
@@ -367,8 +386,9 @@ def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gath
     parts = workers.map(work, len(named), places.rays)
     if not parts:
         return gathered
-    means = places.of_receivers(named, np.concatenate([p[0] for p in parts]))
-    noise = places.errors_of_receivers(named, np.concatenate([p[1] for p in parts]))
+    more, doubt = places.aimed_at(named, radiance.values[:, :3])
+    means = places.of_receivers(named, np.concatenate([p[0] for p in parts]) + more)
+    noise = places.errors_of_receivers(named, np.abs(np.concatenate([p[1] for p in parts]) + doubt))
     return replace(gathered, irradiance=means + gathered.direct_irradiance, noise=noise)
 
 
@@ -391,14 +411,16 @@ def hidden_receivers(transport: Transport, receivers: Receivers, finest: float, 
 
 
 def _mean_seen(radiance: Radiance, places: NDArray[np.int32], channels: int = 1) -> tuple[Floats, Floats, Floats]:
-    """Mean of what the rays (n, r) see, (n, 3), the standard error of its luminance and the share of valid rays.
+    """Mean of what the rays (n, r) see, (n, 3), how far its luminance is off one way and the share of valid rays.
+
+    What it is off by is half of what the even rays see more than the odd ones: their size is a standard error.
 
     With three `channels`, a third of the rays sees each.
     """
     if channels > 1:
         thirds = [_mean_seen(radiance, third) for third in np.split(places, channels, axis=1)]
         means = np.stack([light[:, k] for k, (light, _, _) in enumerate(thirds)], axis=1)
-        doubt: Floats = sum(share * noise for share, (_, noise, _) in zip(LUMINANCE, thirds, strict=True))
+        doubt: Floats = sum(share * np.abs(off) for share, (_, off, _) in zip(LUMINANCE, thirds, strict=True))
         return means, doubt, np.minimum.reduce([valid for _, _, valid in thirds])
     count, rays = places.shape
     # The four numbers of a place are taken as one complex one: several times faster than as a row.
@@ -410,8 +432,7 @@ def _mean_seen(radiance: Radiance, places: NDArray[np.int32], channels: int = 1)
     means = total[:, :3] / np.maximum(total[:, 3:], 1.0)
     # Inside a solid the few rays that slip out at an edge mean nothing.
     means[valid < LEAST_VALID_SHARE] = 0.0
-    noise = np.abs((halves[:, 0, :3] - halves[:, 1, :3]) @ LUMINANCE) / rays
-    return means, noise, valid
+    return means, (halves[:, 0, :3] - halves[:, 1, :3]) @ LUMINANCE / rays, valid
 
 
 def _looked(

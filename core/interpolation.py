@@ -73,6 +73,7 @@ class PlacesOnFaces:
         for first in range(0, len(named), rows):
             some = met.places(named[first : first + rows])
             seen[some[some >= 0]] = True
+        seen[met.places_aimed_at()] = True
         seen[cells.copied] |= seen[count - len(cells.copied) : count]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)
         cell = self.place >> 1

@@ -10,8 +10,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .aimed_light import AimedLight
 from .sampling import Singles
 from .scene import Floats, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class MetTable:
+    """What the rays of k receivers met.
+
+    Attributes
+    ----------
+    places : (k, rays) int32
+        Place that each ray of the hemisphere met.
+    aimed : AimedLight
+        Of the bright places, which are dark in the table.
+    """
+
+    places: NDArray[np.int32]
+    aimed: AimedLight
+
+    @staticmethod
+    def of(places: NDArray[np.int32]) -> MetTable:
+        """Where no rays were aimed."""
+        return MetTable(places, AimedLight.none(len(places)))
+
+    def __len__(self) -> int:
+        return len(self.places)
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +48,7 @@ class MetPlaces:
 
     Attributes
     ----------
-    tables : tuple of (k, rays) int32
+    tables : tuple of MetTable
     rows : (n, r) int
         Of each receiver, counted through all tables.
     weights : (n, r) float32
@@ -34,19 +59,19 @@ class MetPlaces:
         1, or 3 where a third of the rays is for each.
     """
 
-    tables: tuple[NDArray[np.int32], ...]
+    tables: tuple[MetTable, ...]
     rows: Ints
     weights: Singles
     rays: int
     channels: int = 1
 
     @staticmethod
-    def of(table: NDArray[np.int32], channels: int = 1) -> MetPlaces:
-        """The places of receivers (n, rays), row by row."""
-        return MetPlaces.of_rows((table,), np.arange(len(table)), table.shape[1], channels)
+    def of(table: MetTable, channels: int = 1) -> MetPlaces:
+        """The places of receivers, row by row."""
+        return MetPlaces.of_rows((table,), np.arange(len(table)), table.places.shape[1], channels)
 
     @staticmethod
-    def of_rows(tables: tuple[NDArray[np.int32], ...], row: Ints, rays: int, channels: int = 1) -> MetPlaces:
+    def of_rows(tables: tuple[MetTable, ...], row: Ints, rays: int, channels: int = 1) -> MetPlaces:
         """The places of receivers that have one row (n,) each."""
         return MetPlaces(tables, row[:, None], np.ones((len(row), 1), dtype=np.float32), rays, channels)
 
@@ -93,8 +118,18 @@ class MetPlaces:
         among = np.searchsorted(ends, rows, side="right")
         for k in np.flatnonzero(np.bincount(among)) if self.tables else ():
             here = np.flatnonzero(among == k)
-            found[here] = self.tables[k].take(rows[here] - (ends[k] - len(self.tables[k])), axis=0)
+            found[here] = self.tables[k].places.take(rows[here] - (ends[k] - len(self.tables[k])), axis=0)
         return found
+
+    def aimed_at(self, rows: Ints, radiance: Singles) -> tuple[Floats, Floats]:
+        """What rays that were aimed at bright places bring to such rows: see `AimedLight.irradiance`."""
+        found = [table.aimed.irradiance(radiance) for table in self.tables]
+        light, difference = (np.concatenate([part[k] for part in found]) for k in (0, 1))
+        return light[rows], difference[rows]
+
+    def places_aimed_at(self) -> NDArray[np.int32]:
+        """The bright places that some row sees."""
+        return np.concatenate([np.zeros(0, np.int32), *(table.aimed.places() for table in self.tables)])
 
     def of_receivers(self, named: Ints, values: Floats) -> Floats:
         """At receivers, (n, ...), what is known of the rows `named`, (m, ...)."""
@@ -119,7 +154,7 @@ def weighted(weights: Floats | Singles, values: Floats, which: Ints) -> Floats:
     return total
 
 
-def _same(one: NDArray[np.int32], other: NDArray[np.int32]) -> bool:
+def _same(one: MetTable, other: MetTable) -> bool:
     return one is other
 
 

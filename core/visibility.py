@@ -178,6 +178,7 @@ class RayScene:
             )
 
         self._of_shadow = blocking(chosen[1])
+        self._of_sight = self._of_shadow if (chosen[0] == chosen[1]).all() else blocking(chosen[0])
         self._whole: RayScene | None = None
         self._of_blockers = {which: blocking(mask) for which, mask in (blockers or {}).items()}
 
@@ -187,6 +188,12 @@ class RayScene:
             return self
         other = copy.copy(self)
         other._of_shadow, other._whole = self._of_blockers[blockers], self._whole or self
+        return other
+
+    def of_sight(self) -> RayScene:
+        """The same scene, in which `visible` asks for what `first_hits` meets, whether it throws shadows or not."""
+        other = copy.copy(self)
+        other._of_shadow, other._whole = self._of_sight, self._whole or self
         return other
 
     def in_channels(self) -> tuple[RayScene, ...]:

@@ -4,7 +4,10 @@
 
 import numpy as np
 import pytest
-from radiosity_bake.core.met_places import MetPlaces
+from radiosity_bake.core.aimed_light import AimedLight
+from radiosity_bake.core.direct_light import DirectLight
+from radiosity_bake.core.met_places import MetPlaces, MetTable
+from radiosity_bake.core.scene import LUMINANCE
 
 
 @pytest.fixture
@@ -13,10 +16,15 @@ def tables():
     return np.arange(18, dtype=np.int32).reshape(6, 3), np.arange(100, 112, dtype=np.int32).reshape(4, 3)
 
 
+def met(places):
+    """The places of receivers that aimed no rays, row by row."""
+    return MetPlaces.of(MetTable.of(places))
+
+
 def test_receivers_put_together_and_chosen_have_the_places_that_they_had(tables):
     one, other = tables
     which = np.array([9, 0, 6, 3, 8])
-    found = MetPlaces.of(one).joined(MetPlaces.of(other)).taken(which)
+    found = met(one).joined(met(other)).taken(which)
     np.testing.assert_array_equal(found.places(found.rows[:, 0]), np.concatenate([one, other])[which])
     np.testing.assert_array_equal(found.places(found.rows[1:3, 0]), np.concatenate([one, other])[which[1:3]])
 
@@ -26,27 +34,27 @@ def test_new_receivers_take_their_own_places_among_old_ones(tables):
     taken, rows = np.array([0, 1, 0, 2, 0, 0, 5]), np.array([0, 2, 4, 5])
     expected = one[taken]
     expected[rows] = other
-    found = MetPlaces.of(one).with_more(taken, MetPlaces.of(other), rows)
+    found = met(one).with_more(taken, met(other), rows)
     np.testing.assert_array_equal(found.places(found.rows[:, 0]), expected)
 
 
 def test_no_place_is_copied(tables):
     one, other = tables
-    found = MetPlaces.of(one).joined(MetPlaces.of(other)).taken(np.arange(3, 9))
-    assert found.tables[0] is one
-    assert found.tables[1] is other
+    found = met(one).joined(met(other)).taken(np.arange(3, 9))
+    assert found.tables[0].places is one
+    assert found.tables[1].places is other
 
 
 def test_where_some_places_are_not_kept_none_are(tables):
     one, _ = tables
-    found = MetPlaces.of(one).joined(MetPlaces.of(np.empty((2, 0), dtype=np.int32)))
+    found = met(one).joined(met(np.empty((2, 0), dtype=np.int32)))
     assert (len(found), found.rays, found.tables) == (8, 0, ())
     assert found.places(np.arange(8)).shape == (8, 0)
 
 
 def test_a_mean_names_the_rows_of_those_that_it_is_of(tables):
     one, other = tables
-    both = MetPlaces.of(one).joined(MetPlaces.of(other))
+    both = met(one).joined(met(other))
     mixed = both.mixed(np.array([[7, 2], [3, 3]]), np.array([[0.25, 0.75], [0.5, 0.5]]))
     values = np.arange(10.0) ** 2
     np.testing.assert_allclose(mixed.of_receivers(np.arange(10), values), [0.25 * 49 + 0.75 * 4, 9.0])
@@ -55,8 +63,8 @@ def test_a_mean_names_the_rows_of_those_that_it_is_of(tables):
 
 def test_a_mean_of_means_names_each_row_once(tables):
     one, _ = tables
-    met = MetPlaces.of(one)
-    first = met.joined(met.mixed(np.array([[0, 1], [1, 2]]), np.full((2, 2), 0.5)))
+    own = met(one)
+    first = own.joined(own.mixed(np.array([[0, 1], [1, 2]]), np.full((2, 2), 0.5)))
     second = first.mixed(np.array([[6, 7]]), np.full((1, 2), 0.5))
     np.testing.assert_array_equal(second.rows, [[0, 1, 2]])
     np.testing.assert_allclose(second.weights, [[0.25, 0.5, 0.25]])
@@ -64,9 +72,9 @@ def test_a_mean_of_means_names_each_row_once(tables):
 
 def test_places_that_go_on_from_others_do_not_have_their_tables_twice(tables):
     one, other = tables
-    met = MetPlaces.of(one)
-    more = met.mixed(np.array([[0, 5]]), np.full((1, 2), 0.5)).joined(MetPlaces.of(other))
-    found = met.joined(more)
+    own = met(one)
+    more = own.mixed(np.array([[0, 5]]), np.full((1, 2), 0.5)).joined(met(other))
+    found = own.joined(more)
     assert len(found.tables) == 2
     np.testing.assert_array_equal(found.rows[6], [0, 5])
     np.testing.assert_array_equal(found.places(found.rows[7:, 0]), other)
@@ -74,5 +82,22 @@ def test_places_that_go_on_from_others_do_not_have_their_tables_twice(tables):
 
 def test_errors_that_may_go_together_are_not_averaged_away(tables):
     one, _ = tables
-    mixed = MetPlaces.of(one).mixed(np.array([[0, 1, 2]]), np.array([[0.8, 0.6, -0.4]]))
+    mixed = met(one).mixed(np.array([[0, 1, 2]]), np.array([[0.8, 0.6, -0.4]]))
     np.testing.assert_allclose(mixed.errors_of_receivers(np.arange(3), np.ones(3)), 1.8, rtol=1e-6)
+
+
+def test_receivers_keep_the_light_of_bright_places_that_they_had(tables):
+    one, other = (MetPlaces.of(MetTable(table, lit(len(table), 1.0 + k))) for k, table in enumerate(tables))
+    radiance = np.array([[0.0, 0.0, 0.0], [3.0, 2.0, 1.0]], dtype=np.float32)
+    found = one.joined(other).taken(np.array([9, 0, 6, 3]))
+    light, difference = found.aimed_at(found.rows[:, 0], radiance)
+    np.testing.assert_array_equal(light[:, 1], 2.0 * np.array([5.0, 1.0, 2.0, 4.0]))
+    # All of it came by even rays.
+    np.testing.assert_allclose(difference, light @ LUMINANCE)
+    assert set(found.places_aimed_at()) == {1}
+
+
+def lit(count, first):
+    """Receivers that see place 1 by weights from `first` on."""
+    some = np.arange(count)
+    return AimedLight(DirectLight.of(count, some, np.ones(count, int), first + some), DirectLight.none(count))

@@ -230,7 +230,7 @@ def test_the_size_counts_every_array_once(kept_bakes):
     values = np.zeros(100)
     assert size_of((values, [values, values[:10]], replace(DirectLight.none(3), weight=values))) == values.nbytes
     _, kept = kept_bakes("one lamp", output="REFINED")
-    assert size_of(kept) > sum(table.nbytes for table in kept.shown.gathered.places.tables)
+    assert size_of(kept) > sum(table.places.nbytes for table in kept.shown.gathered.places.tables)
 
 
 # ----------------------------------------------------------------------------------------------------- what is refused
