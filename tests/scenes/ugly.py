@@ -362,6 +362,7 @@ def ugly_scenes(draw: st.DrawFn, largest: int = 3) -> UglyScene:
         threads=1,
         seed=draw(st.integers(0, 3)),
         memory_limit=draw(st.sampled_from([64, 2048])),
+        patch_limit=draw(st.sampled_from([0, 0, 1, 30])),
     )
     scene = Scene(tuple(placed), draw(worlds()), tuple(draw(st.lists(lamps(), max_size=3))))
     return UglyScene(scene, settings, in_company)
