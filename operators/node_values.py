@@ -6,6 +6,7 @@ import numpy as np
 from mathutils import Euler
 
 from ..core.textures import sampled
+from .blackbody import blackbody
 from .images import UnreadableImageError, read_image
 from .light_paths import FACING, mean_facing, seen_by_diffuse_rays
 from .node_links import input_of, source_of, title_of, value_of
@@ -81,7 +82,7 @@ class ValueReader:
             if found is not None:
                 self.notes.append(f"{title_of(output.node)} counts as its mean over all angles")
                 return found
-        if self.with_textures:
+        if self.with_textures or output.node.type in _OF_CONSTANTS:
             found = self._texture(output, outer)
             if found is not None:
                 return found
@@ -107,6 +108,15 @@ class ValueReader:
             blend = node.blend_type if node.data_type == "RGBA" else "MIX"
             names = "Factor_Float", f"A_{kind}", f"B_{kind}"
             return self._blend(node, blend, names, groups, node.clamp_factor, node.clamp_result)
+        if node.type == "BLACKBODY" and not input_of(node, "Temperature").is_linked:
+            return blackbody(value_of(input_of(node, "Temperature")))
+        if (
+            node.type == "LIGHT_FALLOFF"
+            and output.identifier == "Quadratic"
+            and value_of(input_of(node, "Smooth")) == 0.0
+        ):
+            # As light falls off by itself.
+            return self.value(node, "Strength", groups)
         if node.type == "MATH" and node.operation in _SUMS:
             return self._sum(node, groups)
         if node.type == "MIX_RGB":
@@ -219,6 +229,9 @@ _BLENDS = {
     "SCREEN": lambda a, b: 1.0 - (1.0 - a) * (1.0 - b),
 }
 """What a Mix node makes of its second colour where its factor is 1."""
+
+_OF_CONSTANTS = {"BLACKBODY", "LIGHT_FALLOFF", "MATH", "MIX", "MIX_RGB"}
+"""Nodes that make constants of constants."""
 
 _OPERANDS = "Value", "Value_001", "Value_002"
 

@@ -242,6 +242,20 @@ def test_a_node_that_is_not_read_is_named_with_the_lamp():
     assert '"Key"' in warning and "Light Falloff" in warning
 
 
+def test_a_sum_and_a_quadratic_falloff_in_a_lamp_are_read():
+    light = add_lamp("POINT", "Key").data
+    (plain,), _ = lamps_read()
+    tree = node_tree(light)
+    shine, falloff, product = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "LightFalloff", "Math"))
+    product.operation = "MULTIPLY"
+    product.inputs[0].default_value, product.inputs[1].default_value = 1.5, 2.0
+    tree.links.new(product.outputs[0], falloff.inputs["Strength"])
+    tree.links.new(falloff.outputs["Quadratic"], shine.inputs["Strength"])
+    tree.links.new(shine.outputs[0], tree.nodes[0].inputs["Surface"])
+    (lamp,), warnings = lamps_read()
+    assert warnings == () and lamp.strength == pytest.approx(3.0 * plain.strength)
+
+
 def test_an_area_lamp_of_no_size_is_named():
     add_lamp("AREA", shape="RECTANGLE", size=1.0, size_y=0.0)
     lamps, warnings = lamps_read()
