@@ -209,7 +209,9 @@ class _Pieces:
         a, b, c = corners.transpose(1, 0, 2)
         low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
         middle = (low.min(axis=0) + high.max(axis=0)) / 2.0
+        # Shares of about the whole, whatever the unit: of their squares single precision holds no scene's in mm or km.
         areas = triangle_areas(corners)
+        areas = np.ldexp(areas, -np.frexp(areas.sum())[1])
         bounds = np.concatenate([(middle - low).T, (high - middle).T, -reflectance.T, reflectance.T])
         sums = np.concatenate([normals.T * areas, areas[None]])
         return _Pieces(np.arange(len(corners)), bounds.astype(np.float32), sums.astype(np.float32))
@@ -256,7 +258,8 @@ class _Pieces:
         area = self._sums[3][a] + self._sums[3][b]
         flat = np.divide(np.sqrt(both), area, out=np.zeros_like(area), where=area > 0.0)
         allowed = (square < size * size) & (spread <= LARGEST_SPREAD) & (flat >= flatness)
-        allowed &= facing >= LEAST_COSINE * np.sqrt(one * other)
+        # Their product is beyond single precision where pieces are very small.
+        allowed &= facing >= LEAST_COSINE * np.sqrt(one) * np.sqrt(other)
         return square * (1.0 + BENT * (1.0 - flat.astype(np.float64))), allowed
 
 

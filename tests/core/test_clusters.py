@@ -60,6 +60,20 @@ def bumpy() -> PatchTree:
 # ------------------------------------------------------------------------------------------------ what is joined
 
 
+@pytest.mark.parametrize("scale", [2.0**-20, 2.0**34])
+def test_the_size_of_the_scene_does_not_change_what_is_joined(scale):
+    # Powers of two, so that nothing is rounded otherwise. In small scenes the product of areas was 0, so that the sides
+    # of a fold of 70 degrees seemed to face the same way; in large ones it was infinite, and nothing was joined.
+    rows = 64
+    vertices = np.array([(x, 0.01 * k, 0.007 * (k % 2)) for k in range(rows) for x in (0.0, 0.01)])
+    triangles = [t for a in range(0, 2 * rows - 2, 2) for t in ((a, a + 1, a + 3), (a, a + 3, a + 2))]
+    one, other = (
+        tree_of(surface_mesh("fold", vertices * size, triangles), smallest=0.05 * size) for size in (1.0, scale)
+    )
+    assert len(one.clusters) > 0
+    assert np.array_equal(one.patch, other.patch)
+
+
 def test_triangles_whose_area_is_lost_beside_that_of_all_are_left_as_they_are():
     # Areas of clusters are differences of sums. That of two pieces of a sliver was 0, and a cluster without area has no
     # typical triangle: fewer were added to the tree than there are clusters.
