@@ -313,13 +313,16 @@ def counted_share_of_triangles(tree: PatchTree, largest: float) -> Floats:
 
 
 def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
-    """By node: squared error of interpolation times area, area, and luminance times area, (3, nodes)."""
+    """By node: squared error of interpolation times area, area, and light times area, (3, nodes).
+
+    All are means over the channels.
+    """
     faces, face = known.faces, known.face
     corners = faces.points[faces.corners[face]]
-    luminance = known.corner_irradiance() @ LUMINANCE
+    irradiance = known.corner_irradiance()
     area = known.weights(surfaces)
-    missed = interpolation_error(corners, known.places.of_corner, luminance)
-    summed = (missed**2 * area, area, area * luminance.mean(axis=1))
+    square = interpolation_error(corners, known.places.of_corner, irradiance) ** 2
+    summed = (square * area, area, area * irradiance.mean(axis=(1, 2)))
     by_node = [np.bincount(faces.node[face], weights=value, minlength=nodes) for value in summed]
     return np.stack(by_node).astype(np.float64)  # of no face at all, counts are whole numbers
 

@@ -14,7 +14,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from .direct import LUMINANCE
 from .error_estimate import gradients, lit_area
 from .geometry import cross, lengths, normalized
 from .lit import Lit
@@ -61,7 +60,7 @@ def turned_diagonals(surfaces: Surfaces, shown: Lit, tolerance: float) -> Ints:
     corners = shown.faces.points[shown.faces.corners]
     # What stays as it is is of a group of its own.
     group = np.where(aside, -1 - np.arange(count), shown.faces.triangle)
-    _, mean = lit_area(weight, weight * (values @ LUMINANCE).mean(axis=1))
+    _, mean = lit_area(weight, weight * values.mean(axis=(1, 2)))
     return turned(corners, np.concatenate(sides, axis=2), of_corner, group, LEAST_BEND * tolerance * mean)
 
 
@@ -129,8 +128,7 @@ class _Net:
         length = lengths(along)
         normal = normalized(cross(along[:, 0], along[:, 1]))
         outward = normalized(np.cross(along, normal[:, None]))
-        channels = [np.einsum("nex,nx->ne", outward, gradients(at, light[..., k])) for k in range(light.shape[2])]
-        return np.stack(channels, axis=2), length
+        return np.einsum("nex,ncx->nec", outward, gradients(at, light)), length
 
     def _bends(self, edge: Ints, slope: Floats) -> Floats:
         """Bend of light across edges (m,), with slopes (m, c) on their own side; none where nothing is beyond."""

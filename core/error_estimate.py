@@ -40,7 +40,7 @@ def lit_area(area: Floats, light: Floats, dim: float = DIM) -> tuple[float, floa
     ----------
     area : (f,) float
     light : (f,) float
-        Luminance times area.
+        Light times area.
 
     Returns
     -------
@@ -58,26 +58,26 @@ def lit_area(area: Floats, light: Floats, dim: float = DIM) -> tuple[float, floa
 
 
 def gradients(corners: Floats, values: Floats) -> Floats:
-    """Gradient of a linear function on each triangle, in its plane, (f, 3).
+    """Gradients of linear functions on each triangle, in its plane, (f, c, 3).
 
     Parameters
     ----------
     corners : (f, 3, 3) float
-    values : (f, 3) float
+    values : (f, 3, c) float
         At the corners.
     """
     e1, e2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     d1, d2 = values[:, 1] - values[:, 0], values[:, 2] - values[:, 0]
-    g11, g12, g22 = (np.einsum("fx,fx->f", a, b) for a, b in ((e1, e1), (e1, e2), (e2, e2)))
+    g11, g12, g22 = (np.einsum("fx,fx->f", a, b)[:, None] for a, b in ((e1, e1), (e1, e2), (e2, e2)))
     det = g11 * g22 - g12 * g12
     det = np.where(det > 0.0, det, np.inf)
     a, b = (d1 * g22 - d2 * g12) / det, (d2 * g11 - d1 * g12) / det
-    result: Floats = a[:, None] * e1 + b[:, None] * e2
+    result: Floats = a[..., None] * e1[:, None] + b[..., None] * e2[:, None]
     return result
 
 
 def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Floats:
-    """Estimated RMS error of linear interpolation on each face, (f,), in the unit of `values`.
+    """Estimated RMS error of linear interpolation on each face and over the channels, (f,), in the unit of `values`.
 
     Where a smooth function is interpolated, the gradient jumps across an edge by about its second derivative times the
     distance h of the faces' middles, and the error in between is h^2 / 8 times that derivative (Zienkiewicz & Zhu 1987
@@ -89,7 +89,7 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     corners : (f, 3, 3) float, scene units
     of_corner : (f, 3) int
         Receivers of the corners: faces that share two are neighbours.
-    values : (f, 3) float
+    values : (f, 3, c) float
         At the corners.
     """
     gradient = gradients(corners, values)
@@ -107,10 +107,11 @@ def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Flo
     # Around a thin rod gradients turn with the surface: no more is missed than half of what the values span.
     low, high = values.min(axis=1), values.max(axis=1)
     span = np.maximum(high[first], high[second]) - np.minimum(low[first], low[second])
-    missed = np.minimum(jump * np.clip(length, altitude, 2.0 * altitude) / 8.0, span / 2.0)
+    reach = np.clip(length, altitude, 2.0 * altitude)[:, None]
+    missed = np.minimum(jump * reach / 8.0, span / 2.0)
     square = np.zeros(len(corners))
     for side in (first, second):
-        np.maximum.at(square, side, missed**2)
+        np.maximum.at(square, side, (missed**2).mean(axis=1))
     return np.sqrt(square)
 
 
@@ -123,7 +124,7 @@ class Expected:
     weight : (f,) float
         Area that counts (of emitters and of what is hidden, none).
     light : (f,) float
-        Mean luminance.
+        Mean over the corners and channels.
     missed : (f,) float
         Squared error of interpolation.
     noise : (f,) float

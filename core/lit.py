@@ -60,12 +60,12 @@ class Lit:
     def expected_error(self, surfaces: Surfaces) -> Expected:
         """What the light at the vertices lets expect of the error of the face sides."""
         corners = self.faces.points[self.faces.corners[self.face]]
-        luminance = self.corner_irradiance() @ LUMINANCE
+        irradiance = self.corner_irradiance()
         return Expected(
             self.weights(surfaces),
-            luminance.mean(axis=1),
-            interpolation_error(corners, self.places.of_corner, luminance) ** 2,
-            (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1),
+            irradiance.mean(axis=(1, 2)),
+            interpolation_error(corners, self.places.of_corner, irradiance) ** 2,
+            (self._noise_of_channels()[self.places.of_corner] ** 2).mean(axis=1),
             self.side == 0,
         )
 
@@ -89,6 +89,14 @@ class Lit:
         area, mean = lit_area(weight, weight * (self.corner_irradiance() @ LUMINANCE).mean(axis=1))
         square = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
         return math.sqrt(square / area) / mean if mean > 0.0 else 0.0
+
+    def _noise_of_channels(self) -> Floats:
+        """Noise at the receivers, RMS over the channels, were it in each the same share of the light, (n,)."""
+        light = self.gathered.irradiance
+        luminance = light @ LUMINANCE
+        square = self.gathered.noise**2 * (light**2).mean(axis=1)
+        noise: Floats = np.sqrt(np.divide(square, luminance**2, out=np.zeros_like(square), where=luminance > 0.0))
+        return noise
 
     def redrawn(self, corner: Ints | None) -> Lit:
         """The same light on faces whose diagonals were turned.

@@ -13,7 +13,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .direct import LUMINANCE
 from .error_estimate import interpolation_error
 from .gather import Mixture
 from .geometry import lengths, normalized, triangle_areas
@@ -56,7 +55,7 @@ def middles_in_between(known: Lit, tree: PatchTree, places: Receivers, goal: tup
     places : Receivers
         New ones, some of which are middles of known edges.
     goal : (float, float)
-        Luminance that all interpolation may miss, W m^-2 sr^-1, and the area over which.
+        Light that all interpolation may miss, RMS over the channels, W m^-2 sr^-1, and the area over which.
     """
     vertex, ends, missed, area = _halved_edges(known, tree)
     order = np.argsort(vertex, kind="stable")
@@ -90,7 +89,7 @@ def _halved_edges(known: Lit, tree: PatchTree) -> tuple[Ints, Ints, Floats, Floa
     corners = faces.corners[face]
     middles = tree.midpoints(corners, np.roll(corners, -1, axis=1))
     some = np.flatnonzero((middles >= 0).any(axis=1))
-    indirect = (known.gathered.irradiance - known.gathered.direct_irradiance) @ LUMINANCE
+    indirect = known.gathered.irradiance - known.gathered.direct_irradiance
     of_corner = known.places.of_corner
     missed = interpolation_error(faces.points[corners], of_corner, indirect[of_corner])
     # Noise makes values differ, too, but what is gathered anew has as much of it.

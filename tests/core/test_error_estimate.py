@@ -29,7 +29,7 @@ def test_the_error_over_cells_follows_their_extent_along_which_light_changes(axi
     width = 0.1
     corners, of_corner = strips(width, slenderness * width)
     extent = (width, slenderness * width)[axis]
-    found = interpolation_error(corners, of_corner, corners[..., axis] ** 2)
+    found = interpolation_error(corners, of_corner, corners[..., [axis]] ** 2)
     # Faces on the border have no neighbour behind it that would tell.
     along = corners[..., axis]
     inside = (along.min(axis=1) > 0.5 * extent) & (along.max(axis=1) < (CELLS - 0.5) * extent)
