@@ -39,7 +39,7 @@ BEFORE_CUT = 0.75
 the foot of an object is a contact shadow that is often narrower than the face, and would darken all of it."""
 
 SHORT_WAY = 0.05
-"""Share of an edge up to which a cut lies on the same outline as the edge's seen end."""
+"""Share of an edge up to which a cut takes the light of the edge's seen end as it is."""
 
 BEYOND_CUT = 0.004
 """Share of the edge beyond the cut at which the hidden side is gathered: a few times what the search leaves open."""
@@ -306,21 +306,22 @@ def cut_receivers(faces: Faces, places: Receivers, cuts: CutEdges) -> tuple[Rece
     return before, _along(faces, places, cuts, beyond)
 
 
-def drawn_to_cut(at_corner: Floats, before_cut: Floats, change: Floats, touching: NDArray[np.bool_]) -> Floats:
+def drawn_to_cut(at_corner: Floats, before_cut: Floats, change: Floats, hidden: NDArray[np.bool_]) -> Floats:
     """Light at cuts, (k, 3), from that at their seen ends and at `BEFORE_CUT` of the way.
 
-    From a seen end that is on the outline itself, it is that end's: on so short a way there is the contact shadow
-    alone, and under an object that does not quite touch, darkness.
+    Close to a seen end it is that end's. From an end on the outline itself, on so short a way there is the contact
+    shadow alone, and under an object that does not quite touch, darkness; and where the end is in a corner, it was
+    gathered aside, but on the way to the cut there are the planes of both walls.
 
     Parameters
     ----------
     change : (k,) float
         Where the cuts are on their edges.
-    touching : (k,) bool
-        Whether the seen ends are on an outline.
+    hidden : (k,) bool
+        Whether the places before the cuts are hidden, which tell nothing of the light beside them.
     """
     drawn = np.maximum(at_corner + (before_cut - at_corner) / BEFORE_CUT, 0.0)
-    return np.where((touching & (change < SHORT_WAY))[:, None], at_corner, drawn)
+    return np.where((hidden | (change < SHORT_WAY))[:, None], at_corner, drawn)
 
 
 def values_on_outlines(

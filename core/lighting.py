@@ -266,8 +266,8 @@ def cut_light(shown: Lit, cuts: TracedCuts | None) -> tuple[Faces, Ints, Floats]
         return shown.faces, shown.face, shown.corner_irradiance()
     count, gathered, edges = len(shown.faces.triangle), shown.gathered, cuts.edges
     start, end = edges.seen, edges.hidden
-    seen = drawn_to_cut(gathered.irradiance[start], cuts.seen.irradiance, edges.change, gathered.touching[start])
-    beyond = drawn_to_cut(gathered.irradiance[end], cuts.hidden.irradiance, edges.beyond, gathered.touching[end])
+    seen = drawn_to_cut(gathered.irradiance[start], cuts.seen.irradiance, edges.change, cuts.seen.hidden)
+    beyond = drawn_to_cut(gathered.irradiance[end], cuts.hidden.irradiance, edges.beyond, cuts.hidden.hidden)
     beyond = np.where(edges.beyond[:, None] > 0.0, beyond, cuts.hidden.irradiance)
     whole = np.flatnonzero(edges.whole)
     corner, light = values_on_outlines(

@@ -261,3 +261,17 @@ def test_a_vertex_that_gathers_aside_does_not_move_the_cut():
     assert cuts.change[inner] == pytest.approx(0.6, abs=SECTIONS**-SEARCHES)
     # On the border it is gathered beside the edge, but no further along it.
     assert cuts.change[~cuts.border | (cuts.end == 2)] == pytest.approx(0.6, abs=0.04 + SECTIONS**-SEARCHES)
+
+
+def test_the_foot_of_a_step_is_not_black_where_it_ends_at_a_wall():
+    low = block("low step", (0.0, 0.0, 0.0), (1.4, 0.77, 0.22), reflectance=0.0)
+    high = block("high step", (0.0, 0.42, 0.22), (1.4, 0.79, 0.44), reflectance=0.0)
+    wall = exact.rectangle("wall", (1.4, -1.0, -0.5), (0, 0, 2.0), (0, 3.0, 0), reflectance=0.0)
+    tread = bake(Scene((low, high, wall), np.ones(3)), BakeSettings(quality="DRAFT", minimum_size=0.1)).meshes[0]
+    corners = tread.vertices[tread.triangles]
+    # A cut is found to within 1/512 of an edge of at most 0.2.
+    before_foot = (corners[..., 2] > 0.22 - 1e-6).all(axis=1) & (corners[..., 1].max(axis=1) < 0.4205)
+    at_wall = before_foot & (corners[..., 0].min(axis=1) > 1.2)
+    assert at_wall.any()
+    # In the very corner a quarter of the sky is left, were wall and step without end; they hide no more than that.
+    assert tread.irradiance[at_wall].min() > 0.2
