@@ -112,7 +112,7 @@ LEAST_RAYS_SHARE = 0.25
 LEAST_VERTICES_SHARE = 0.25
 """Share of the memory that vertices may take in any case: else what rays and cells leave of it."""
 
-FINER_FACES = 16.0
+FINER_FACES = 32.0
 """Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
 
 LEAST_SEEING = 1.0 / 12.0
@@ -127,7 +127,7 @@ LARGEST_PATCH = 1.0 / 16.0
 """Share of the area that the sizes are made for, which a patch counts for at most. Where no ground is wide none is
 larger."""
 
-FINER_CUTS = 4.0
+FINER_CUTS = 2.0
 """Times smaller still where the outline of another object crosses them."""
 
 BYTES_PER_SORTED_RAY = 48
