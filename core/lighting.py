@@ -131,7 +131,8 @@ def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
     solution = solve_balance(balance.exchange, balance.reflectance, direct, balance.areas, balance.translucence)
     check_solved(solution, surfaces)
     cells = patches.cells
-    seen = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)[cells.element]
+    seen_of_element = seen_radiance(patches.nodes, balance, solution, emitters, surfaces)
+    seen = seen_of_element[cells.element]
     reflectance = surfaces.reflectance[cells.triangle].astype(np.float32)
     translucence = None
     if surfaces.reflectance_texture is not None or surfaces.let_pass().any():
@@ -140,7 +141,8 @@ def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:
         triangle, corners = cells.triangle[varied], cells.corners(varied)
         whole = surfaces.reflectance_over(triangle, corners)
         reflectance[varied] = surfaces.of_opaque_parts(whole, triangle, corners)
-        incident = np.zeros((int(cells.element.max()) + 1, 3))
+        # The twin of a patch that is covered in part may have no cell, and be the last element.
+        incident = np.zeros_like(seen_of_element)
         incident[balance.elements] = solution.incident
         if surfaces.translucence is not None:
             translucence = np.zeros_like(reflectance)
