@@ -24,13 +24,14 @@ from .surfaces import Surfaces
 from .visibility import OFFSET, RayScene
 from .world import map_cells
 
-COVER_POINTS, COVER_RAYS, LEAST_SHORT = 16, 8, 7 / 8
-"""Points of a patch that are tested, rays of each, and the share that must be short at one of them for the patch to be
-covered in part; beside a wall half of them are, in the corner of a room three quarters."""
+COVER_POINTS, LEAST_SHORT = 16, 0.82
+"""Points of a patch that are tested, and the share of rays that must be short at one of them for the patch to be covered
+in part; beside a wall half of them are, in the corner of a room three quarters, in a gap above a lamp often no more than
+five sixths."""
 
-SURE_COVER_RAYS = 128
-"""Rays of each point of a patch that seems covered in part: of eight, seven are often short in the corner of a room,
-and what counts as covered there exchanges light with its like alone."""
+COVER_RAYS, SURE_COVER_RAYS = 8, 512
+"""Rays of each point at first, and where the patch then seems covered in part: of eight, seven are often short in the
+corner of a room, and what counts as covered there exchanges light with its like alone."""
 
 LONG_ROW = 4
 """Times more rays that an element is given when most of its first ones started inside a solid."""

@@ -132,6 +132,17 @@ def test_nothing_is_covered_in_the_corners_of_an_empty_room():
         assert len(transport.separate_cover().element) == 0
 
 
+def test_a_ceiling_is_covered_by_a_lamp_whose_gap_shows_a_sixth_of_the_directions():
+    # Asked for seven eighths of short rays it was not, and what is in the gap lit the room.
+    lamp = block("lamp", (1.5, 1.5, 3.53), (2.5, 2.5, 3.93))
+    for seed in range(3):
+        transport = transport_of(Scene((*exact.box_walls((4, 4, 4)), lamp), DARK), rays=32, seed=seed)
+        for _ in range(3):
+            transport.tree.split(transport.tree.leaves())
+        transport.trace(fronts(transport.tree))
+        assert len(transport.separate_cover().element) >= 6
+
+
 def test_the_wall_before_an_open_box_of_one_sheet_is_lit():
     box = exact.closed_room((2, 2, 2), reflectance=0.5, name="box")
     open_side = (box.vertices[box.triangles][..., 0] == 2.0).all(axis=1)
