@@ -25,9 +25,9 @@ from .visibility import OFFSET, RayScene
 from .world import map_cells
 
 COVER_POINTS, LEAST_SHORT = 16, 0.82
-"""Points of a patch that are tested, and the share of rays that must be short at one of them for the patch to be covered
-in part; beside a wall half of them are, in the corner of a room three quarters, in a gap above a lamp often no more than
-five sixths."""
+"""Points of a patch that are tested, and the share of rays that must be short at one of them for the patch to be
+covered in part; beside a wall half of them are, in the corner of a room three quarters, in a gap above a lamp often no
+more than five sixths."""
 
 COVER_RAYS, SURE_COVER_RAYS = 8, 512
 """Rays of each point at first, and where the patch then seems covered in part: of eight, seven are often short in the
