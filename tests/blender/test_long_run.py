@@ -13,7 +13,11 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the memory of a
 
 BAKES = 20
 ALLOWED_BYTES = 2 * 2**20
-"""More than the pools of memory differ by from turn to turn."""
+"""More than the pools of glibc differ by from turn to turn."""
+
+MORE_TURNS = 6
+"""Where memory comes from other pools, which a Blender may bring along, it goes up and down by more: then so many turns
+may be made until it is down again. What a turn leaves behind adds up instead."""
 
 
 def test_twenty_bakes_leave_no_data_block_no_object_and_no_memory_behind():
@@ -21,7 +25,12 @@ def test_twenty_bakes_leave_no_data_block_no_object_and_no_memory_behind():
     assert seen[-1].bakes >= BAKES
     assert long_run.left_behind(seen) == {}
     assert long_run.objects_a_turn(seen) <= long_run.ALLOWED_OBJECTS
-    assert seen[-1].resident - seen[-2].resident < ALLOWED_BYTES
+    first, *later = (turn.resident for turn in seen[1:])
+    for _ in range(MORE_TURNS):
+        if min(later) - first < ALLOWED_BYTES:
+            break
+        later.append(long_run.turns(1)[-1].resident)
+    assert min(later) - first < ALLOWED_BYTES
 
 
 def test_bakes_that_were_kept_would_be_found(monkeypatch):
