@@ -13,6 +13,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
+from inspect import signature
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -20,6 +21,8 @@ from unittest.mock import patch
 import numpy as np
 from radiosity_bake.core import bake as bake_module
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.detail import light_up_in_detail
+from radiosity_bake.core.diagonals import turned_diagonals
 from radiosity_bake.core.result import BakeResult
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
@@ -133,8 +136,19 @@ def by_form_factors_alone() -> Iterator[None]:
     def same_sizes(surfaces: Any, settings: BakeSettings, effort: Any, area: float) -> tuple[float, float]:
         return settings.minimum_size, settings.minimum_size
 
-    patient = {name: replace(effort, tolerance=math.inf) for name, effort in bake_module.EFFORTS.items()}
-    with patch.object(bake_module, "minimum_sizes", same_sizes), patch.object(bake_module, "EFFORTS", patient):
+    def never_split(*arguments: Any) -> Any:
+        bound = signature(light_up_in_detail).bind(*arguments)
+        bound.arguments["tolerance"] = math.inf
+        return light_up_in_detail(*bound.args)
+
+    def never_turned(surfaces: Any, shown: Any, tolerance: float) -> Any:
+        return turned_diagonals(surfaces, shown, math.inf)
+
+    with (
+        patch.object(bake_module, "minimum_sizes", same_sizes),
+        patch.object(bake_module, "light_up_in_detail", never_split),
+        patch.object(bake_module, "turned_diagonals", never_turned),
+    ):
         yield
 
 
