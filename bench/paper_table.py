@@ -18,6 +18,11 @@ def gain(row: Row, key: str) -> float:
     return float(1.0 - row["adaptive"][key] / row["uniform"][key])
 
 
+def is_finest(row: Row, rows: Sequence[Row]) -> bool:
+    """Say whether a row has the least minimum size of its scene."""
+    return bool(row["minimum_size"] == min(r["minimum_size"] for r in rows if r["scene"] == row["scene"]))
+
+
 def cells(row: Row) -> tuple[str, ...]:
     """Return the texts of a row's columns, uniform / adaptive in each."""
     u, a = row["uniform"], row["adaptive"]

@@ -48,6 +48,7 @@ def kept(entry: Entry) -> Entry:
         report = entry["report"]
         found["estimated_error"] = round(report["estimated_error"], 6)
         found["seconds_in_ray_library"] = round(report["seconds_in_ray_library"], 4)
+        found["warnings"] = report["warnings"]
         found["stages"] = {stage: round(seconds, 4) for stage, seconds in report["seconds"].items()}
     return found
 

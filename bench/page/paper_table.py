@@ -4,11 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ..methods import PAPER_GAINS
-from ..paper_table import costliest_stage, gain
-from ..results import CLOCKS, Document, Entry, title
+from ..paper_table import costliest_stage, gain, is_finest
+from ..results import CLOCKS, Document, title
 from .markdown import Lines, paragraph, percent, seconds, table
 
 
@@ -57,8 +55,3 @@ def paper_table(measured: Document) -> Lines:
         "",
         "![The three scenes, baked](images/paper-scenes.png)",
     ]
-
-
-def is_finest(row: Entry, rows: Sequence[Entry]) -> bool:
-    """Say whether a row has the least minimum size of its scene."""
-    return bool(row["minimum_size"] == min(r["minimum_size"] for r in rows if r["scene"] == row["scene"]))

@@ -53,7 +53,12 @@ def entry(method: str, setting: str, seconds: float, rms: float, points: int = 1
         "rays": 64 * points,
         "run": run,
         "accuracy": {"rms": rms, "lit_rms": rms, "bias": -rms / 10, "p95": 2 * rms},
-        "report": {"estimated_error": 2 * rms, "seconds_in_ray_library": seconds, "seconds": stages},
+        "report": {
+            "estimated_error": 2 * rms,
+            "seconds_in_ray_library": seconds,
+            "seconds": stages,
+            "warnings": [],
+        },
     }
 
 
@@ -202,3 +207,27 @@ def test_the_published_page_explains_whatever_takes_much_of_the_time_and_is_no_r
     rows = json.loads((DOCS / "performance.json").read_text(encoding="utf-8"))["profile"]["scenes"]
     large = {module for row in rows for module, share in row["shares"].items() if share >= MUCH}
     assert large <= {RAY_LIBRARY, *REASONS}
+
+
+def test_an_error_that_is_too_large_is_told_with_what_the_bake_warned_of(tmp_path):
+    ours = entry("Radiosity Bake", "HIGH", 1.0, 0.02)
+    warned = {**ours, "report": {**ours["report"], "warnings": ["The memory limit ended the search early"]}}
+    text = " ".join(page(measured(tmp_path, warned)).split())
+    assert 'it estimates 4.00%, and warns: "The memory limit ended the search early".' in text
+    assert "and warns" not in page(measured(tmp_path, ours))
+
+
+def test_the_finest_row_of_a_paper_scene_that_gains_too_little_is_explained(tmp_path):
+    def half(seconds: float, fragments: int) -> dict:
+        stages = {"gathering": 0.5 * seconds, "total": seconds}
+        both = {"seconds": seconds, "processor_seconds": seconds, "rms": 0.01, "rays": 1000, "stages": stages}
+        return {**both, "fragments": fragments, "vertices": 2 * fragments}
+
+    row = {"scene": "paper_scene_1", "minimum_size": 0.1, "uniform": half(2.0, 900), "adaptive": half(1.0, 100)}
+    table = {"rows": [row], "threshold": 0.02, "quality": "GOOD", "run": "2026-01-01"}
+    document = measured(tmp_path, entry("Radiosity Bake", "GOOD", 1.0, 0.01))
+    text = " ".join(page({**document, "paper_table": table}).split())
+    assert "**The finest row of Paper scene 1.** It gains 50.0%, not 60%." in text
+    assert "gathered at 200 vertices in place of 1,800, which takes 0.50 of 1.00 seconds" in text
+    fast = {**row, "adaptive": half(0.5, 100)}
+    assert "The finest row of" not in page({**document, "paper_table": {**table, "rows": [fast]}})
