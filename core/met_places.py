@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import is_
 from typing import Any
 
 import numpy as np
@@ -82,7 +83,7 @@ class MetPlaces:
         """Those of these receivers, then those of others, which may go on from these, with more tables."""
         rays = min(self.rays, others.rays)
         own = len(self.tables)
-        goes_on = own > 0 and len(others.tables) >= own and all(map(_same, self.tables, others.tables))
+        goes_on = own > 0 and len(others.tables) >= own and all(map(is_, self.tables, others.tables))
         first = 0 if goes_on else sum(len(table) for table in self.tables)
         tables = others.tables if goes_on else self.tables + others.tables
         wide = max(self.rows.shape[1], others.rows.shape[1])
@@ -152,10 +153,6 @@ def weighted(weights: Floats | Singles, values: Floats, which: Ints) -> Floats:
         chosen = np.flatnonzero(weight)
         total[chosen] += values[column[chosen]] * weight[chosen].astype(np.float64).reshape(wide)
     return total
-
-
-def _same(one: MetTable, other: MetTable) -> bool:
-    return one is other
 
 
 def _widened(values: NDArray[Any], wide: int, filling: float | None = None) -> NDArray[Any]:

@@ -252,19 +252,24 @@ def test_a_transparent_shader_lets_its_colour_through():
     assert surface.is_bare and not surface.clear
 
 
-def sided_material(front, back):
-    """Return a material whose two sides are two shader nodes, mixed by Backfacing; each is (type, inputs)."""
-    material = bpy.data.materials.new("Sided")
+def mixed_by(socket_of_tree, first, second):
+    """Return a material that mixes two shader nodes, (type, inputs), by an output that a function makes."""
+    material = bpy.data.materials.new("Mixed")
     tree = node_tree(material)
-    mix, geometry = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeNewGeometry")
-    tree.links.new(geometry.outputs["Backfacing"], mix.inputs[0])
-    for place, (kind, inputs) in ((1, front), (2, back)):
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(socket_of_tree(tree), mix.inputs[0])
+    for place, (kind, inputs) in ((1, first), (2, second)):
         node = tree.nodes.new(kind)
         for name, value in inputs.items():
             socket_of(node, name).default_value = value
         tree.links.new(node.outputs[0], mix.inputs[place])
     link_surface(tree, mix)
     return material
+
+
+def sided_material(front, back):
+    """Return a material whose two sides are two shader nodes, mixed by Backfacing; each is (type, inputs)."""
+    return mixed_by(lambda tree: tree.nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], front, back)
 
 
 def test_emission_may_end_behind():
@@ -279,21 +284,6 @@ def test_a_back_of_another_colour_counts_as_the_front_and_is_named():
     red, blue = (("ShaderNodeBsdfDiffuse", {"Color": colour}) for colour in ((1, 0, 0, 1), (0, 0, 1, 1)))
     (note,) = assert_surface(sided_material(red, blue), (1.0, 0.0, 0.0))
     assert "from behind" in note
-
-
-def mixed_by(socket_of_tree, first, second):
-    """Return a material that mixes two shader nodes, (type, inputs), by an output that a function makes."""
-    material = bpy.data.materials.new("Mixed")
-    tree = node_tree(material)
-    mix = tree.nodes.new("ShaderNodeMixShader")
-    tree.links.new(socket_of_tree(tree), mix.inputs[0])
-    for place, (kind, inputs) in ((1, first), (2, second)):
-        node = tree.nodes.new(kind)
-        for name, value in inputs.items():
-            socket_of(node, name).default_value = value
-        tree.links.new(node.outputs[0], mix.inputs[place])
-    link_surface(tree, mix)
-    return material
 
 
 RED, BLUE = (("ShaderNodeBsdfDiffuse", {"Color": colour}) for colour in ((0.9, 0.0, 0.0, 1.0), (0.0, 0.0, 0.9, 1.0)))
