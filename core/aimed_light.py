@@ -47,5 +47,7 @@ class AimedLight:
 
     def irradiance(self, radiance: Singles) -> tuple[Floats, Floats]:
         """Irradiance over pi, (n, 3), and how much more of its luminance the even rays bring than the others, (n,)."""
+        if not len(self.even.emitter) and not len(self.odd.emitter):
+            return np.zeros((self.even.count, 3)), np.zeros(self.even.count)
         even, odd = self.even.irradiance(radiance), self.odd.irradiance(radiance)
         return even + odd, (even - odd) @ LUMINANCE

@@ -321,7 +321,7 @@ def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
     corners = faces.points[faces.corners[face]]
     irradiance = known.corner_irradiance()
     area = known.weights(surfaces)
-    square = interpolation_error(corners, known.places.of_corner, irradiance) ** 2
+    square = interpolation_error(corners, known.neighbours, irradiance) ** 2
     summed = (square * area, area, area * irradiance.mean(axis=(1, 2)))
     by_node = [np.bincount(faces.node[face], weights=value, minlength=nodes) for value in summed]
     return np.stack(by_node).astype(np.float64)  # of no face at all, counts are whole numbers

@@ -72,47 +72,91 @@ def gradients(corners: Floats, values: Floats) -> Floats:
     det = g11 * g22 - g12 * g12
     det = np.where(det > 0.0, det, np.inf)
     a, b = (d1 * g22 - d2 * g12) / det, (d2 * g11 - d1 * g12) / det
-    result: Floats = a[..., None] * e1[:, None] + b[..., None] * e2[:, None]
+    result: Floats = np.einsum("fc,fx->fcx", a, e1) + np.einsum("fc,fx->fcx", b, e2)
     return result
 
 
-def interpolation_error(corners: Floats, of_corner: Ints, values: Floats) -> Floats:
-    """Estimated RMS error of linear interpolation on each face and over the channels, (f,), in the unit of `values`.
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """Pairs of faces that share an edge.
 
-    Where a smooth function is interpolated, the gradient jumps across an edge by about its second derivative times the
-    distance h of the faces' middles, and the error in between is h^2 / 8 times that derivative (Zienkiewicz & Zhu 1987
-    estimate the same from the recovered gradient). For h stands the edge's length, between one and two altitudes on it
-    as in a right isosceles triangle: slender faces reach far from their short edges, and not from their long ones.
+    Attributes
+    ----------
+    edge, other : (p,) int32
+        The edge as one of each face's own, counted through all faces, three for each.
+    reach : (p,) float, scene units
+        How far a change of gradient at the edge reaches.
+    """
+
+    edge: NDArray[np.int32]
+    other: NDArray[np.int32]
+    reach: Floats
+
+    def beside(self, faces: NDArray[np.bool_]) -> Neighbours:
+        """Those pairs one of which is among `faces`, (f,) bool."""
+        some = np.flatnonzero(faces[self.edge // 3] | faces[self.other // 3])
+        return Neighbours(self.edge[some], self.other[some], self.reach[some])
+
+
+def neighbours(corners: Floats, of_corner: Ints) -> Neighbours:
+    """Find the faces that share an edge, and how far what changes there reaches.
+
+    That is the edge's length, between one and two altitudes on it as in a right isosceles triangle: slender faces reach
+    far from their short edges, and not from their long ones.
 
     Parameters
     ----------
     corners : (f, 3, 3) float, scene units
     of_corner : (f, 3) int
         Receivers of the corners: faces that share two are neighbours.
+    """
+    following = of_corner[:, [1, 2, 0]]
+    low, high = np.minimum(of_corner, following).ravel(), np.maximum(of_corner, following).ravel()
+    key = low * np.int64(of_corner.max(initial=0) + 1) + high
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    pair = np.flatnonzero(key[1:] == key[:-1])
+    edge, other = order[pair], order[pair + 1]
+    points, first = corners.reshape(-1, 3), edge // 3
+    length = lengths(points[3 * first + (edge + 1) % 3] - points[edge])
+    area = triangle_areas(corners)
+    altitude = np.divide(area[first] + area[other // 3], length, out=np.zeros(len(pair)), where=length > 0.0)
+    reach = np.clip(length, altitude, 2.0 * altitude)
+    return Neighbours(edge.astype(np.int32), other.astype(np.int32), reach)
+
+
+def interpolation_error(corners: Floats, beside: Neighbours, values: Floats) -> Floats:
+    """Estimated RMS error of linear interpolation on each face and over the channels, (f,), in the unit of `values`.
+
+    Where a smooth function is interpolated, the gradient jumps across an edge by about its second derivative times the
+    distance h of the faces' middles, and the error in between is h^2 / 8 times that derivative (Zienkiewicz & Zhu 1987
+    estimate the same from the recovered gradient). For h stands `Neighbours.reach`.
+
+    Parameters
+    ----------
+    corners : (f, 3, 3) float, scene units
+    beside : Neighbours
+        Among these faces; those that have none are said to miss nothing.
     values : (f, 3, c) float
         At the corners.
     """
     gradient = gradients(corners, values)
-    start, end = of_corner.ravel(), np.roll(of_corner, -1, axis=1).ravel()
-    key = np.minimum(start, end) * np.int64(of_corner.max(initial=0) + 1) + np.maximum(start, end)
-    face = np.repeat(np.arange(len(corners)), 3)
-    order = np.argsort(key, kind="stable")
-    pair = np.flatnonzero(key[order][1:] == key[order][:-1])
-    first, second = face[order[pair]], face[order[pair + 1]]
-    jump = lengths(gradient[first] - gradient[second])
-    along = order[pair]
-    length = lengths(corners[first, (along + 1) % 3] - corners[first, along % 3])
-    area = triangle_areas(corners)
-    altitude = np.divide(area[first] + area[second], length, out=np.zeros(len(pair)), where=length > 0.0)
+    first, second = beside.edge // 3, beside.other // 3
+    jump = lengths(gradient.take(first, axis=0) - gradient.take(second, axis=0))
     # Around a thin rod gradients turn with the surface: no more is missed than half of what the values span.
-    low, high = values.min(axis=1), values.max(axis=1)
-    span = np.maximum(high[first], high[second]) - np.minimum(low[first], low[second])
-    reach = np.clip(length, altitude, 2.0 * altitude)[:, None]
-    missed = np.minimum(jump * reach / 8.0, span / 2.0)
-    square = np.zeros(len(corners))
-    for side in (first, second):
-        np.maximum.at(square, side, (missed**2).mean(axis=1))
-    return np.sqrt(square)
+    a, b, c = (np.ascontiguousarray(values[:, corner]) for corner in range(3))
+    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    span = np.maximum(high.take(first, axis=0), high.take(second, axis=0))
+    span -= np.minimum(low.take(first, axis=0), low.take(second, axis=0))
+    missed = np.minimum(jump * (beside.reach / 8.0)[:, None], span / 2.0)
+    missed *= missed
+    mean = missed @ np.full(missed.shape[1], 1.0 / missed.shape[1])
+    # Where three faces share an edge, one of them is in two pairs, once on either side.
+    square = np.zeros(3 * len(corners))
+    square[beside.edge] = mean
+    square[beside.other] = np.maximum(square[beside.other], mean)
+    a, b, c = square.reshape(-1, 3).T
+    return np.sqrt(np.maximum(np.maximum(a, b), c))
 
 
 @dataclass(frozen=True, eq=False)

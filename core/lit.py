@@ -6,12 +6,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .direct import LUMINANCE
-from .error_estimate import Expected, interpolation_error, lit_area
+from .error_estimate import Expected, Neighbours, interpolation_error, lit_area, neighbours
 from .gather import Gathered, corner_values
 from .geometry import triangle_areas
 from .patches import PatchTree
@@ -45,6 +46,11 @@ class Lit:
     gathered: Gathered
     share: Floats
 
+    @cached_property
+    def neighbours(self) -> Neighbours:
+        """The face sides that share an edge."""
+        return neighbours(self.faces.points[self.faces.corners[self.face]], self.places.of_corner)
+
     def corner_irradiance(self) -> Floats:
         """Irradiance over pi at the corners of the face sides, (f, 3, 3)."""
         return corner_values(self.gathered, self.places.of_corner)
@@ -64,7 +70,7 @@ class Lit:
         return Expected(
             self.weights(surfaces),
             irradiance.mean(axis=(1, 2)),
-            interpolation_error(corners, self.places.of_corner, irradiance) ** 2,
+            interpolation_error(corners, self.neighbours, irradiance) ** 2,
             (self._noise_of_channels()[self.places.of_corner] ** 2).mean(axis=1),
             self.side == 0,
         )

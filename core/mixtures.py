@@ -85,21 +85,23 @@ def middles_in_between(known: Lit, tree: PatchTree, places: Receivers, goal: tup
 def _halved_edges(known: Lit, tree: PatchTree) -> tuple[Ints, Ints, Floats, Floats]:
     """Edges of face sides that have a middle now: its vertex (e,), the receivers at its ends (e, 2), what
     interpolation of the indirect light misses on the face, (e,), and a third of the area of that, (e,)."""
-    faces, face = known.faces, known.face
-    corners = faces.corners[face]
-    middles = tree.midpoints(corners, np.roll(corners, -1, axis=1))
-    some = np.flatnonzero((middles >= 0).any(axis=1))
-    indirect = known.gathered.irradiance - known.gathered.direct_irradiance
-    of_corner = known.places.of_corner
-    missed = interpolation_error(faces.points[corners], of_corner, indirect[of_corner])
+    faces, face, gathered = known.faces, known.face, known.gathered
+    of_face = tree.midpoints(faces.corners, np.roll(faces.corners, -1, axis=1))
+    halved = (of_face >= 0).any(axis=1)[face]
+    some = np.flatnonzero(halved)
+    middles, of_corner = of_face[face[some]], known.places.of_corner
+    indirect = gathered.irradiance - gathered.direct_irradiance
+    corners = faces.points[faces.corners[face]]
+    missed = interpolation_error(corners, known.neighbours.beside(halved), indirect[of_corner])[some]
+    of_corner = of_corner[some]
     # Noise makes values differ, too, but what is gathered anew has as much of it.
-    noise = (known.gathered.noise[of_corner] ** 2).mean(axis=1)
+    noise = (gathered.noise[of_corner] ** 2).mean(axis=1)
     missed = np.sqrt(np.maximum(missed**2 - NOISE_OF_DIFFERENCE**2 * noise, 0.0))
-    vertices = tree.vertices(np.maximum(middles[some], 0), faces.node[face[some]])
-    row, edge = np.nonzero(middles[some] >= 0)
-    ends = np.stack([of_corner[some[row], edge], of_corner[some[row], (edge + 1) % 3]], axis=1)
-    area = triangle_areas(faces.points[corners[some]]) * known.share[face[some]] / 3.0
-    return vertices[row, edge], ends, missed[some[row]], area[row]
+    vertices = tree.vertices(np.maximum(middles, 0), faces.node[face[some]])
+    row, edge = np.nonzero(middles >= 0)
+    ends = np.stack([of_corner[row, edge], of_corner[row, (edge + 1) % 3]], axis=1)
+    area = triangle_areas(corners[some]) * known.share[face[some]] / 3.0
+    return vertices[row, edge], ends, missed[row], area[row]
 
 
 def _fits(known: Receivers, places: Receivers, ends: Ints, place: Ints) -> NDArray[np.bool_]:

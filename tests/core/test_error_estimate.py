@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radiosity_bake.core.checks import FEWEST, MOST, VERTICES_FOR_A_CHECK, check_places
-from radiosity_bake.core.error_estimate import SAFETY, Expected, interpolation_error, relative_error
+from radiosity_bake.core.error_estimate import SAFETY, Expected, interpolation_error, neighbours, relative_error
 from radiosity_bake.core.gather import Gathered
 
 CELLS = 8
@@ -29,7 +29,7 @@ def test_the_error_over_cells_follows_their_extent_along_which_light_changes(axi
     width = 0.1
     corners, of_corner = strips(width, slenderness * width)
     extent = (width, slenderness * width)[axis]
-    found = interpolation_error(corners, of_corner, corners[..., [axis]] ** 2)
+    found = interpolation_error(corners, neighbours(corners, of_corner), corners[..., [axis]] ** 2)
     # Faces on the border have no neighbour behind it that would tell.
     along = corners[..., axis]
     inside = (along.min(axis=1) > 0.5 * extent) & (along.max(axis=1) < (CELLS - 0.5) * extent)
