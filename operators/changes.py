@@ -46,7 +46,9 @@ def _write_group(group: bpy.types.PropertyGroup, values: dict) -> None:
 
 def in_view_layer(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> bool:
     """Return whether `view_layer` shows or could show `obj`."""
-    return view_layer.objects.get(obj.name) == obj
+    found = view_layer.objects.get(obj.name)
+    # A library override may have the name of what it overrides, and stand beside it.
+    return found == obj or (found is not None and any(other == obj for other in view_layer.objects))
 
 
 def link(obj: bpy.types.Object, collection: bpy.types.Collection, journal: Journal) -> None:

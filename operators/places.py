@@ -73,6 +73,26 @@ def sources_in_place(outputs: Outputs, view_layer: bpy.types.ViewLayer) -> Itera
             view_layer.update()
 
 
+def homes_of(source: bpy.types.Object, scene: bpy.types.Scene) -> list[bpy.types.Collection]:
+    """Return the collections that can hold a refined object of `source`: its own, or the next above in the scene.
+
+    Nothing can be put into a collection of another file, nor into a library override of one.
+    """
+    above: dict[bpy.types.Collection, list[bpy.types.Collection]] = {}
+    for parent in (scene.collection, *scene.collection.children_recursive):
+        for child in parent.children:
+            above.setdefault(child, []).append(parent)
+    found: dict[bpy.types.Collection, None] = {}
+    pending = [collection for collection in source.users_collection if collection.library is None]
+    while pending:
+        collection = pending.pop(0)
+        if collection.library is None and collection.override_library is None:
+            found[collection] = None
+        else:
+            pending.extend(above.get(collection, ()))
+    return list(found)
+
+
 def remember_place(output: bpy.types.Object) -> None:
     """Remember where a new refined object is, to tell later whether it was moved."""
     output.radiosity.place = np.array(output.matrix_basis).reshape(-1)

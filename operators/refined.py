@@ -24,7 +24,7 @@ from .journal import Journal
 from .layers import Subdivision, carry, carry_vertex_groups
 from .likeness import take_after
 from .local_mesh import inverse_of
-from .places import is_bent_by_parent, remember_place, take_out
+from .places import homes_of, is_bent_by_parent, remember_place, take_out
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
 from .targets import Target
 from .textured import Displays
@@ -53,9 +53,8 @@ def store_refined(
     # Last of all that is done to the mesh, because it may drop faces that Blender cannot hold (a corner used twice)
     # with all that belongs to them.
     mesh.validate()
-    for collection in source.users_collection:
-        if collection.library is None:
-            link(output, collection, journal)
+    for collection in homes_of(source, view_layer.id_data):
+        link(output, collection, journal)
     _take_place(source, output, view_layer, journal)
     return output
 
@@ -172,6 +171,9 @@ def _object_like(
         output = source.copy()
         journal.on_failure(bpy.data.objects.remove, output)
         output.name = mesh.name
+        if output.override_library is not None:
+            # It has nothing left of what its original overrides.
+            output.make_local(clear_liboverride=True)
         forget(output)
         output.modifiers.clear()
         for slot in output.material_slots:

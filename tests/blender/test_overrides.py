@@ -6,6 +6,7 @@ import bpy
 import pytest
 
 from tests.blender.making import (
+    add_collection,
     add_cube,
     bake_selected,
     colours_of,
@@ -76,3 +77,24 @@ def test_a_bake_of_an_override_that_cannot_be_stored_changes_nothing(overridden)
     with full_disk():
         bake_selected("ORIGINAL")
     assert differences(before, file_state()) == []
+
+
+def test_an_overridden_collection_has_its_refined_objects_beside_it(tmp_path):
+    add_cube("Linked", collection=add_collection("Parts"))
+    parts = linked_from_library(tmp_path, "collections", "Parts")
+    bpy.context.scene.collection.children.link(parts)
+    parts.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
+    cube = next(obj for obj in bpy.context.scene.objects if obj.override_library is not None)
+    select_also(cube)
+    before = file_state()
+    bake_selected("REFINED")
+    (output,) = bpy.context.selected_objects
+    assert output.users_collection == (bpy.context.scene.collection,) and output.override_library is None
+    assert bpy.ops.radiosity.restore() == {"FINISHED"}
+    # Blender counts one user too many of what is overridden once an override was copied and removed.
+    changed = differences(before, file_state())
+    assert [change for change in changed if not change.startswith("/objects/Linked [library.blend]/users")] == []
+    bake_selected("REFINED")
+    cube = saved_and_opened(tmp_path)
+    assert bpy.ops.radiosity.restore() == {"FINISHED"}
+    assert {obj.name for obj in bpy.context.scene.objects} == {"Linked"} and not cube.hide_render
