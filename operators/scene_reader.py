@@ -379,11 +379,13 @@ def _slot_materials(obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
     """
     materials = list(local.materials)
     record = obj.original.radiosity
+    own = obj.original.material_slots
     for index, slot in enumerate(obj.material_slots):
-        if index >= len(materials):
+        if slot.link == "OBJECT":
+            # Where it is empty, an evaluated slot tells the mesh's material, which is not rendered.
+            materials[index : index + 1] = [own[index].material if index < len(own) else slot.material]
+        elif index >= len(materials):
             materials.append(slot.material)
-        elif slot.link == "OBJECT":
-            materials[index] = slot.material
     if record.kind == BAKED_IN_PLACE:
         for index, material in enumerate(materials):
             if is_display(material):

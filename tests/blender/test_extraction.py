@@ -186,6 +186,14 @@ def test_a_slot_of_the_object_overrides_the_one_of_the_mesh():
     assert the_mesh(extracted(plane), "Plane").reflectance[0] == pytest.approx([0.7, 0.7, 0.7])
 
 
+def test_an_empty_slot_of_the_object_is_grey_whatever_the_mesh_has():
+    cube = add_cube(materials=[diffuse_material("Of Mesh", (0.9, 0.9, 0.1, 1.0))])
+    cube.material_slots[0].link = "OBJECT"
+    mesh = the_mesh(extracted(cube), "Cube")
+    own = mesh.reflectance if mesh.own_reflectance is None else mesh.own_reflectance
+    assert own == pytest.approx(np.full((12, 3), 0.8))
+
+
 def test_the_material_override_of_the_view_layer_counts_for_all_faces():
     cube = add_cube(materials=[diffuse_material("A"), emission_material()])
     cube.data.polygons[5].material_index = 1
