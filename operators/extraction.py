@@ -16,7 +16,7 @@ from .record import HIDDEN_SOURCE
 from .scene_reader import SceneReader
 from .targets import Target
 from .wanted import Reason, nothing_to_bake, skip_missing, wanted_objects
-from .world import world_light
+from .world import rendered_world, world_light
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,21 +70,22 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
             reader.read()
         warnings += _misplaced(reader.targets, outputs, view_layer)
         warnings += _orphaned(participants.objects.difference(wanted), outputs)
-        warnings += failing_drivers(participants.everything(), (context.scene, context.scene.world))
+        world = rendered_world(view_layer)
+        warnings += failing_drivers(participants.everything(), (context.scene, world))
     targets = tuple(reader.targets)
     skip_missing(wanted, reader, skipped)
     if not targets:
         raise NothingToBakeError(nothing_to_bake(skipped))
     warnings += [f'"{name}" was skipped: it {why.singular}' for why, names in skipped.items() for name in names]
-    world = world_light(context.scene.world if view_layer.use_sky else None, context.scene.frame_current)
+    sky = world_light(world if view_layer.use_sky else None, context.scene.frame_current)
     warnings += reader.warnings()
-    warnings += [f'World "{context.scene.world.name}": {note}' for note in world.notes]
+    warnings += [f'World "{world.name}": {note}' for note in sky.notes]
     return Extraction(
         Scene(
             tuple(reader.meshes),
-            world.radiance,
-            (*reader.lamps, *world.suns),
-            reader.light_groups(context.scene.world, len(world.suns)),
+            sky.radiance,
+            (*reader.lamps, *sky.suns),
+            reader.light_groups(world, len(sky.suns)),
         ),
         targets,
         tuple(warnings),

@@ -47,6 +47,11 @@ class WorldLight:
     notes: tuple[str, ...] = ()
 
 
+def rendered_world(view_layer: bpy.types.ViewLayer) -> bpy.types.World | None:
+    """Return the world that a view layer renders: from Blender 5 on it may have one of its own."""
+    return getattr(view_layer, "world_override", None) or view_layer.id_data.world
+
+
 def world_light(world: bpy.types.World | None, frame: int = 1) -> WorldLight:
     """Return the light of a world; nothing of the file is changed.
 

@@ -232,3 +232,15 @@ def test_relighting_follows_the_strength_of_a_sky_but_not_its_sun():
     next(node for node in world.node_tree.nodes if node.type == "TEX_SKY").sun_elevation += 0.2
     with pytest.raises(RuntimeError, match='"Sky" was changed or moved'):
         bpy.ops.radiosity.relight()
+
+
+@pytest.mark.skipif("world_override" not in bpy.types.ViewLayer.bl_rna.properties, reason="there is none of them here")
+def test_a_view_layer_may_have_a_world_of_its_own():
+    bpy.context.scene.world, bpy.context.view_layer.world_override = (
+        add_world(name, Color=(*colour, 1.0))[0]
+        for name, colour in (("Of All", (1.0, 0.0, 0.0)), ("Own", (0.2, 0.3, 0.4)))
+    )
+    plane = add_plane(select=True)
+    bake_selected("ORIGINAL")
+    # An unoccluded plane under an even world gets the radiance of the world over pi times pi.
+    assert colours_of(plane.data, "Irradiance")[:, :3] == pytest.approx(np.tile((0.2, 0.3, 0.4), (4, 1)), rel=1e-3)
