@@ -27,6 +27,9 @@ MOST_ALONG = 256
 _LARGEST_RATIO = 64.0
 """Of a large triangle's edges to those of a small one that may still have as many cells."""
 
+WHITE = 1.001
+"""Reflectance up to which a colour is white: the rounding of textures may add a little."""
+
 POINTS_AT_ONCE = 2**17
 """Places at which a material is evaluated together."""
 
@@ -97,6 +100,7 @@ class Colouring:
         self._templates: dict[int, Template] = {}
         self._evaluations: dict[Any, Evaluation] = {}
         self._known: dict[Any, Appearance] = {}
+        self._too_bright: dict[Any, set[int]] = {}
         self.users_of_note: dict[tuple[str, str], dict[str, None]] = {}
         self.users_of_evaluated: dict[tuple[str, str], dict[str, None]] = {}
 
@@ -153,7 +157,7 @@ class Colouring:
         along: Ints,
     ) -> Appearance:
         flipped = np.linalg.det(matrix[:3, :3]) < 0.0
-        used = [number for number in np.unique(slot) if number < len(materials) and materials[number] is not None]
+        used = [int(number) for number in np.unique(slot) if number < len(materials) and materials[number] is not None]
         for number in used:
             for note in surfaces[number].notes:
                 self._tell(self.users_of_note, materials[number], note, original)
@@ -161,7 +165,7 @@ class Colouring:
         if attributes is not None and flipped:
             attributes = attributes.turned_over()
         evaluation = None
-        unread = [int(number) for number in used if surfaces[number].unread]
+        unread = [number for number in used if surfaces[number].unread]
         if unread:
             evaluation = self._evaluated(original, local, materials, matrix, random, surfaces, slot, along, unread)
         if evaluation is not None and flipped:
@@ -170,6 +174,10 @@ class Colouring:
         key = id(local), materials, along.tobytes(), flipped, id(evaluation)
         if key not in self._known:
             self._known[key] = appearance_of(surfaces, slot, attributes, along, evaluation)
+            self._too_bright[key] = brighter_than_white(self._known[key])
+        for number in self._too_bright[key].intersection(used):
+            note = "its colour is brighter than white in places; white was used there"
+            self._tell(self.users_of_note, materials[number], note, original)
         return self._known[key]
 
     def _evaluated(
@@ -272,6 +280,15 @@ def appearance_of(
         if parts:
             colours[f"{name}_texture"] = _in_order(parts)
     return Appearance(**colours)
+
+
+def brighter_than_white(appearance: Appearance) -> set[int]:
+    """Return the slots with cells that would reflect more than all light, which the light transport does not have."""
+    texture = appearance.own_reflectance_texture or appearance.reflectance_texture
+    if texture is None:
+        return set()
+    cells = np.repeat(texture.part, texture.along**2)
+    return set(np.unique(cells[(texture.colours > WHITE).any(axis=1)]).tolist())
 
 
 _READ: dict[str, Callable[[Surface], Any]] = {

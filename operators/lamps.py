@@ -11,6 +11,9 @@ from .materials import constant_emission, uses_nodes
 SMALLEST_SPREAD = np.radians(1.0)
 """Radians: at 0 the light of an area lamp is parallel, and all of it would leave in a direction that no ray meets."""
 
+MANY_BOUNCES = 16
+"""Of a lamp's light: to stop after so many is hardly seen."""
+
 LARGEST_SUN = np.radians(120.0)
 """Radians of a sun's diameter above which it is no disk any more that a few rays could stand for."""
 
@@ -84,6 +87,9 @@ def _limits(light: bpy.types.Light) -> list[str]:
     notes = []
     if light.energy < 0.0:
         notes.append("its power is negative; it was taken for zero")
+    bounces = getattr(getattr(light, "cycles", None), "max_bounces", MANY_BOUNCES)
+    if bounces < MANY_BOUNCES:
+        notes.append(f"its light goes on after the {bounces} bounces that it is limited to")
     if light.type == "AREA" and light.spread < SMALLEST_SPREAD:
         notes.append("its spread was taken for 1 degree, the least that is supported")
     if light.type == "SUN" and light.angle > LARGEST_SUN:

@@ -154,6 +154,9 @@ class ShaderReader:
                 combined(np.multiply, colour, coat) for colour in (reflectance, emission, mirrored)
             )
         self._tell_roughness(node, "Diffuse Roughness")
+        below = input_of(node, "Subsurface Weight")
+        if below.is_linked or below.default_value > 0.0:
+            self._values.notes.append("light that scatters below its surface counts as diffuse")
         covered = combined(lambda share: self._layers(node) * share * np.ones(3), diffuse)
         return _Shares(reflectance, emission, through, mirrored=combined(np.add, mirrored, covered), covered=covered)
 

@@ -283,6 +283,12 @@ def test_values_outside_of_what_is_supported_are_named(kind, values, sentence):
     assert '"Key"' in warning and sentence in warning
 
 
+def test_a_lamp_of_few_bounces_goes_on_and_is_named():
+    add_lamp("AREA").data.cycles.max_bounces = 2
+    (warning,) = lamps_read()[1]
+    assert warning == 'Lamp "Lamp": its light goes on after the 2 bounces that it is limited to'
+
+
 def test_relighting_follows_the_power_of_a_lamp_but_not_its_place():
     floor = add_room()
     lamp = add_lamp("POINT", energy=10.0)

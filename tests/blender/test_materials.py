@@ -180,6 +180,11 @@ def test_a_diffuse_shader_that_is_rough_is_named():
     assert "Roughness" in note
 
 
+def test_light_that_scatters_below_the_surface_is_named():
+    notes = assert_surface(principled(Base_Color=(0.5, 0.4, 0.3, 1.0), Subsurface_Weight=0.3), (0.5, 0.4, 0.3))
+    assert notes == ("light that scatters below its surface counts as diffuse",)
+
+
 def test_the_part_of_a_principled_shader_that_is_metal_is_named():
     (note,) = material_surface(principled(Metallic=0.5)).notes
     assert "Metallic shows no diffuse light" in note
