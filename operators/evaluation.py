@@ -397,8 +397,13 @@ def _set_constant(node: bpy.types.Node, name: str, value: float) -> None:
 
 
 def _look_as(scene: bpy.types.Scene, shown: bpy.types.Scene) -> None:
-    """Give a scratch scene the frame of another, for films, and its camera, for coordinates that depend on it."""
+    """Give a scratch scene what nodes may ask another for: its frame, its camera, and properties of the user's own."""
     scene.frame_current, scene.camera = shown.frame_current, shown.camera
+    for owner, model in ((scene, shown), (scene.view_layers[0], bpy.context.view_layer)):
+        for name, value in model.items():
+            # Before Blender 5, those of add-ons and engines are among them.
+            if name not in model.bl_rna.properties:
+                owner[name] = value
     for name in ("resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y"):
         setattr(scene.render, name, getattr(shown.render, name))
 

@@ -17,6 +17,9 @@ MOST_PIXELS = 2048
 MOST_SMOOTHED = 512
 """Along an edge: of larger images, what lies between two pixels is taken for the mean of their light."""
 
+MOST_DIVIDED = 128
+"""Along an edge: smaller images may be seen magnified, so what lies between two pixels is kept in steps."""
+
 _AS_THEY_ARE = {"Non-Color", "Raw", "Generic Data"}
 
 
@@ -64,10 +67,14 @@ def read_image(image: bpy.types.Image, extension: str, closest: bool, alpha_used
     if not (image.is_float or plain):
         if image.colorspace_settings.name != "sRGB":
             raise UnreadableImageError(f'"{image.name}" is in the colour space {image.colorspace_settings.name}')
-        smooth = not closest and max(width, height) <= MOST_SMOOTHED
-        pixels[..., :3] = (
-            _averaged_from_srgb(pixels[..., :3], extension == "REPEAT") if smooth else _from_srgb(pixels[..., :3])
-        )
+        # What fades out at the border of a clipped image fades over half of its own pixels.
+        most_divided = MOST_DIVIDED if extension != "CLIP" else 0
+        if not closest and max(width, height) <= most_divided:
+            pixels = _divided(pixels, extension == "REPEAT")
+        if closest or not most_divided < max(width, height) <= MOST_SMOOTHED:
+            pixels[..., :3] = _from_srgb(pixels[..., :3])
+        else:
+            pixels[..., :3] = _averaged_from_srgb(pixels[..., :3], extension == "REPEAT")
     while max(pixels.shape[:2]) > MOST_PIXELS:
         pixels = halved(pixels)
     return image_of(pixels, extension, closest)
@@ -96,15 +103,24 @@ def _averaged_from_srgb(pixels: Singles, repeated: bool) -> Singles:
     return light / 16.0
 
 
+def _divided(pixels: Singles, repeated: bool) -> Singles:
+    """Return an image with four pixels in place of each along both axes, as it is seen magnified."""
+    for axis in (0, 1):
+        parts = np.stack(list(_between(pixels, axis, repeated)), axis=axis + 1)
+        shape = list(pixels.shape)
+        shape[axis] *= parts.shape[axis + 1]
+        pixels = parts.reshape(shape)
+    return pixels
+
+
 def _between(pixels: Singles, axis: int, repeated: bool) -> Iterator[Singles]:
-    """Give what lies 3/8 and 1/8 of a pixel to both sides of the middles of all, along one axis."""
-    for way in (-1, 1):
+    """Give what lies 3/8 and 1/8 of a pixel to both sides of the middles of all, along one axis and in its order."""
+    for way, share in ((1, 0.375), (1, 0.125), (-1, 0.125), (-1, 0.375)):
         neighbour = np.roll(pixels, way, axis=axis)
         if not repeated:
             border = (slice(None),) * axis + (0 if way == 1 else -1,)
             neighbour[border] = pixels[border]
-        for share in (0.125, 0.375):
-            yield (1.0 - share) * pixels + share * neighbour
+        yield (1.0 - share) * pixels + share * neighbour
 
 
 def _from_srgb(pixels: Singles) -> Singles:

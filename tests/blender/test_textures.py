@@ -537,3 +537,49 @@ def test_a_sharp_picture_in_srgb_has_the_mean_that_cycles_sees():
     ours = with_means(mesh.reflectance, mesh.reflectance_texture)
     # Cycles' values are those of a grid eight times as fine as the picture; half of light and dark would be 20% more.
     assert ours.mean(axis=0) == pytest.approx(theirs.mean(axis=0), rel=0.03)
+
+
+@pytest.mark.parametrize("evaluated", [False, True])
+def test_places_that_are_brighter_than_white_are_named(evaluated):
+    def bright(tree):
+        image = bpy.data.images.new("Bright", 4, 4, float_buffer=True, is_data=True)
+        image.pixels.foreach_set(np.full(64, 1.5, dtype=np.float32))
+        colour = image_node(tree, image)
+        if evaluated:
+            gamma = tree.nodes.new("ShaderNodeGamma")
+            tree.links.new(colour, gamma.inputs["Color"])
+            return gamma.outputs[0]
+        return colour
+
+    sheet = add_sheet(painted(bright))
+    bpy.context.view_layer.update()
+    extraction = extract(bpy.context, [sheet])
+    assert bool(extraction.evaluated) == evaluated
+    note = 'Material "Painted" of "Sheet": its colour is brighter than white in places; white was used there'
+    assert extraction.warnings == (note,)
+
+
+def test_properties_of_the_scene_and_its_view_layer_reach_what_blender_evaluates():
+    def asked(tree, name):
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "VIEW_LAYER", name
+        return node.outputs["Color"]
+
+    bpy.context.scene["of the scene"], bpy.context.view_layer["of the layer"] = [0.8, 0.2, 0.1], [0.1, 0.3, 0.6]
+    for name, colour in (("of the scene", (0.8, 0.2, 0.1)), ("of the layer", (0.1, 0.3, 0.6))):
+        sheet = add_sheet(painted(lambda tree, name=name: asked(tree, name)))
+        bpy.context.view_layer.update()
+        mesh = extract(bpy.context, [sheet]).scene.meshes[-1]
+        assert with_means(mesh.reflectance, mesh.reflectance_texture) == pytest.approx(
+            np.broadcast_to(colour, mesh.reflectance.shape), abs=1e-4
+        )
+
+
+@pytest.mark.parametrize("extension", ["REPEAT", "EXTEND"])
+def test_a_small_picture_in_srgb_is_magnified_as_in_cycles(extension):
+    image = bpy.data.images.new("Halves", 4, 4)
+    halves = np.ones((4, 4, 4), dtype=np.float32)
+    halves[:2, :, :3], halves[2:, :, :3] = (0.9, 0.1, 0.1), (0.1, 0.1, 0.9)
+    image.pixels.foreach_set(halves.reshape(-1))
+    # From pixel to pixel in linear light, the middle between them would be 0.4 in place of 0.2.
+    assert_as_in_cycles(painted(lambda tree: image_node(tree, image, extension=extension)), step=SCALED * STEP)
