@@ -58,7 +58,7 @@ class Locator:
         """The coarse patch of each hit (n,); `weights` (n, 2) of the triangle become those in the patch, in place."""
         tree = self._tree
         root = triangle.copy()
-        moving = np.flatnonzero(tree.root[triangle] < 0)
+        moving = np.flatnonzero(tree.root.take(triangle) < 0)
         if len(moving):
             node, inside = tree.descend_to_coarse(triangle[moving].astype(np.int64), weights[moving])
             root[moving], weights[moving] = node, inside

@@ -366,8 +366,11 @@ class PatchTree:
 
     def _child_of_coarse(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
         """The child that points lie in, of nodes (m,) that were cut or sliced, and their weights (m, 2) there."""
-        child, inside = self.first_child[nodes], weights.copy()
-        is_sliced = self.kind[nodes] == SLICED
+        child, is_sliced = self.first_child.take(nodes), self.kind.take(nodes) == SLICED
+        if is_sliced.all():
+            piece, inside = self._slices.found(child - self._first_slice, weights)
+            return piece + self._first_slice, inside
+        inside = weights.copy()
         one, two = np.flatnonzero(is_sliced), np.flatnonzero(~is_sliced)
         piece, inside[one] = self._slices.found(child[one] - self._first_slice, weights[one])
         child[one] = piece + self._first_slice

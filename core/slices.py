@@ -53,6 +53,11 @@ class Slices:
         last: Ints = np.searchsorted(self.of, self.of, side="right") - 1
         return last
 
+    @cached_property
+    def _into_piece(self) -> Floats:
+        """What makes weights in the triangle those of corners 1 and 2 of each piece, (p, 3, 2)."""
+        return np.linalg.inv(self.weights)[:, :, 1:].copy()
+
     def found(self, first: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:
         """The pieces that points lie in.
 
@@ -69,24 +74,19 @@ class Slices:
         weights : (m, 2) float
             The same in the piece.
         """
-        inside = np.concatenate([1.0 - weights.sum(axis=1, keepdims=True, dtype=np.float64), weights], axis=1)
-        low, high = first, self._last[first]
+        inside = np.empty((len(weights), 3))
+        inside[:, 1:] = weights
+        np.subtract(1.0, inside[:, 1] + inside[:, 2], out=inside[:, 0])
+        low, high = first, self._last.take(first)
         while (low < high).any():
-            middle = (low + high + 1) // 2
-            beyond = np.einsum("mk,mk->m", self.beyond[middle], inside) > 0.0
+            middle = (low + high + 1) >> 1
+            beyond = np.einsum("mk,mk->m", self.beyond.take(middle, axis=0), inside) > 0.0
             low, high = np.where(beyond, middle, low), np.where(beyond, high, middle - 1)
-        a, b, c = self.weights[low].transpose(1, 0, 2)
-        own = np.stack([_determinant(a, inside, c), _determinant(a, b, inside)], axis=1)
+        own = np.einsum("mk,mkj->mj", inside, self._into_piece.take(low, axis=0))
         # Single precision knows places in a long triangle to a larger share of a short piece.
-        own = np.maximum(own / _determinant(a, b, c)[:, None], 0.0)
-        own /= np.maximum(own.sum(axis=1, keepdims=True), 1.0)
+        np.maximum(own, 0.0, out=own)
+        own /= np.maximum(own[:, 0] + own[:, 1], 1.0)[:, None]
         return low, own.astype(weights.dtype)
-
-
-def _determinant(a: Floats, b: Floats, c: Floats) -> Floats:
-    """Determinants of rows (m, 3), (m,)."""
-    result: Floats = np.einsum("mx,mx->m", cross(a, b), c)
-    return result
 
 
 def parts_of_edges(lengths: Floats, longest: Floats) -> Ints:
