@@ -20,7 +20,7 @@ from .geometry import order_along_curve
 from .met_places import MetPlaces, MetTable, weighted
 from .receivers import Receivers, taken_of_two
 from .rows import COVER_GAP, ESCAPED
-from .sampling import Singles, even_chances, frames, hemisphere_lattice
+from .sampling import LATTICE_FALL, Singles, even_chances, frames, hemisphere_lattice
 from .scene import Floats, Ints
 from .transport import Transport
 from .visibility import OFFSET, Hits, RayScene
@@ -511,12 +511,14 @@ def _direct(
     everyone = np.arange(len(receivers.points))
     if len(emitters.strengths) == 0:
         return DirectLight.none(len(everyone))
-    direct, uncertainty = pass_over(everyone, counts.shadow, 201, 0.7, 0.75)
-    again = np.flatnonzero(uncertainty > 0.0)
-    more, uncertainty[again] = pass_over(again, counts.penumbra, 202, 0.75, 0.85)
+    direct, uncertainty = pass_over(everyone, counts.shadow, 201, 0.7, 0.8)
+    most = counts.tolerance * float((direct.irradiance(emitters.strengths) @ LUMINANCE).mean())
+    # Where the rays of the next pass would surely leave too much, they are not asked.
+    enough = uncertainty <= most * (counts.penumbra / counts.shadow) ** LATTICE_FALL
+    again = np.flatnonzero((uncertainty > 0.0) & enough)
+    more, uncertainty[again] = pass_over(again, counts.penumbra, 202, 0.8, 0.85)
     direct = direct.with_more(everyone, more, again)
-    mean = float((direct.irradiance(emitters.strengths) @ LUMINANCE).mean())
-    deep = np.flatnonzero(uncertainty > counts.tolerance * mean)
+    deep = np.flatnonzero(uncertainty > most)
     more, _ = pass_over(deep, counts.deep, 203, 0.85, 1.0)
     return direct.with_more(everyone, more, deep)
 

@@ -29,6 +29,9 @@ LATTICE_ERROR = 0.8
 """Standard error of a share V of a triangle found by n points of a lattice, over sqrt(V (1 - V)) n**-0.75. Shares cut
 off by straight lines in any place, found by 8 to 1,024 points, have 0.7 to 0.9 of it (tests/core/test_direct.py)."""
 
+LATTICE_FALL = 0.75
+"""The power of n that it falls by."""
+
 RAY_COUNTS = np.array([1, 2, 3, *(n << k for k in range(1, 12) for n in (2, 3))])
 """So many rays a part of an emitter may get: all that get the same number can be treated at once."""
 
