@@ -12,6 +12,16 @@ from .scene import Floats, Ints
 WELD_CELLS = 2**20
 """Vertices that fall into the same cell of a grid this fine over a mesh count as one (1e-6 of its size)."""
 
+FARTHEST = 512.0
+"""Reaches of the nearer half of all points from their median, up to which others count for the size of the whole: what
+one stray face that goes farther leaves of single precision is not enough for a room."""
+
+MOST = 7.0 / 8.0
+"""Share of all points that count for it, however far they reach: what is far and of many faces is no stray one."""
+
+ENOUGH_POINTS = 100_000
+"""Points that tell as well as all of them how far they reach."""
+
 
 def cross(a: Floats, b: Floats) -> Floats:
     """Cross products of vectors (n, 3), (n, 3)."""
@@ -36,6 +46,23 @@ def triangle_cross(points: Floats, triangles: Ints) -> Floats:
 def triangle_areas(corners: Floats) -> Floats:
     """Areas of triangles from their corners (t, 3, 3), (t,)."""
     return lengths(cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])) / 2.0
+
+
+def frame(points: Floats, share: float = MOST) -> tuple[Floats, float]:
+    """Centre (3,) and extent of the cube around points (n, 3) for which single precision is to do.
+
+    That of all, unless all but a `share` lie so far away that the others would be a speck in it (`FARTHEST`).
+    """
+    if len(points) == 0:
+        return np.zeros(3), 0.0
+    low, high = points.min(axis=0), points.max(axis=0)
+    extent = float((high - low).max())
+    some = points[:: 1 + len(points) // ENOUGH_POINTS]
+    middle = np.median(some, axis=0)
+    half, most = (len(some) - 1) // 2, int(share * (len(some) - 1))
+    reach = np.partition(np.abs(some - middle).max(axis=1), [half, most])
+    wanted = 2.0 * max(FARTHEST * float(reach[half]), float(reach[most]))
+    return (middle, wanted) if 0.0 < wanted < extent else ((low + high) / 2.0, extent)
 
 
 def weights_in(triangles: Floats, points: Floats) -> Floats:
@@ -87,16 +114,23 @@ def largest_edges(points: Floats, triangles: Ints) -> Floats:
 def welded(points: Floats) -> Ints:
     """For each vertex the lowest index of a vertex at the same place, (v,).
 
-    Positions are compared on a grid of `WELD_CELLS` over the largest extent, so seams that were split in the data are
-    one place here.
+    Positions are compared on a grid of `WELD_CELLS` over the extent of their `frame`, so seams that were split in the
+    data are one place here.
     """
     if len(points) == 0:
         return np.zeros(0, dtype=np.int64)
     low = points.min(axis=0)
-    extent = float((points.max(axis=0) - low).max())
-    cells = np.rint((points - low) * (WELD_CELLS / extent if extent > 0.0 else 0.0)).astype(np.int64)
-    key = (cells[:, 0] * (WELD_CELLS + 1) + cells[:, 1]) * (WELD_CELLS + 1) + cells[:, 2]
-    _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
+    # Of a small mesh, the three corners of a stray face are many.
+    _, extent = frame(points, 0.5)
+    # Numbers of cells stay whole as float64, however far away some are.
+    cells = np.rint((points - low) * (WELD_CELLS / extent if extent > 0.0 else 0.0))
+    if cells.max() > WELD_CELLS:
+        _, first, inverse = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+        inverse = inverse.ravel()
+    else:
+        number = cells.astype(np.int64)
+        key = (number[:, 0] * (WELD_CELLS + 1) + number[:, 1]) * (WELD_CELLS + 1) + number[:, 2]
+        _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
     result: Ints = first[inverse].astype(np.int64)
     return result
 

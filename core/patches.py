@@ -353,6 +353,9 @@ class PatchTree:
                 child[cut], inside[cut] = self._child_of_coarse(node[cut], w[cut])
             nodes[moving], weights[moving] = child, inside
             moving = moving[self.first_child[child] >= 0]
+        # Each step doubles by how much rounding had a point outside: after twenty it would lie in another leaf.
+        np.clip(weights, 0.0, 1.0, out=weights)
+        np.minimum(weights[:, 1], 1.0 - weights[:, 0], out=weights[:, 1])
         return nodes, weights
 
     def descend_to_coarse(self, nodes: Ints, weights: NDArray[np.float32]) -> tuple[Ints, NDArray[np.float32]]:

@@ -12,7 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import NothingToBakeError
-from .geometry import corner_angles, lengths, normalized, triangle_areas, triangle_cross, triangle_shells, welded
+from .geometry import (
+    corner_angles,
+    cross,
+    frame,
+    lengths,
+    normalized,
+    triangle_areas,
+    triangle_cross,
+    triangle_shells,
+    welded,
+)
 from .limits import LARGEST_COORDINATE, lamp_warnings, light_warnings, sound_lamp, sound_light
 from .planes import share_planes
 from .scene import Floats, Ints, Lamp, LightLinking, Scene, SurfaceMesh, Texture
@@ -20,8 +30,14 @@ from .textures import joined, mean_colours, with_means
 from .transmittance import Transmittance, of_opaque, transmittance_of
 
 SMALLEST_AREA = 1e-14
-"""Triangles with less than this share of the squared extent of the scene have no area that float32 rays could meet."""
+"""Triangles with less than this share of the squared extent of the frame have no area that float32 rays could meet."""
 
+LARGEST_SLANTED = 16.0
+"""Extents of the frame above which triangles are left out, unless they are square to an axis, which rays meet exactly:
+float32 has the plane of larger ones off by as much as rays start off it, so that they would shade themselves."""
+
+LARGEST_SQUARE = 4096.0
+"""The same for all triangles: float32 tells places on larger ones apart no better than what stands there is large."""
 
 HAIR = 8e-7
 """How much solids are made smaller for rays, in units of the extent that the scene would have if it ended with them: 13
@@ -144,10 +160,9 @@ class Surfaces:
 
     def _hair_of(self, triangles: Ints) -> float:
         """How much some triangles (k, 3) are moved for rays, scene units."""
-        used = self.points[self.triangles.ravel()]
-        middle = (used.min(axis=0) + used.max(axis=0)) / 2.0
+        middle, extent = frame(self.points[self.triangles.ravel()])
         # On a wide ground, rays are as fine near its middle as the coordinates there, which are small.
-        return HAIR * 2.0 * float(np.abs(self.points[triangles] - middle).max(initial=0.0))
+        return HAIR * min(2.0 * float(np.abs(self.points[triangles] - middle).max(initial=0.0)), extent)
 
     @cached_property
     def _of_solids(self) -> Ints:
@@ -387,7 +402,7 @@ def _somewhere(points: Floats) -> NDArray[np.bool_]:
 def _extent(meshes: tuple[SurfaceMesh, ...]) -> float:
     corners = [m.vertices[m.triangles] for m in meshes]
     used = np.concatenate([c[_somewhere(c).all(axis=1)].reshape(-1, 3) for c in corners] or [np.zeros((0, 3))])
-    return float(np.ptp(used, axis=0).max()) if len(used) else 0.0
+    return frame(used)[1]
 
 
 def _sound(mesh: SurfaceMesh, extent: float, warnings: list[str]) -> Ints:
@@ -398,15 +413,31 @@ def _sound(mesh: SurfaceMesh, extent: float, warnings: list[str]) -> Ints:
     area = np.zeros(len(corners))
     area[somewhere] = triangle_areas(corners[somewhere])
     small = somewhere & (area <= SMALLEST_AREA * extent * extent)
+    size, slanted = _sizes(corners)
+    vast = (slanted > LARGEST_SLANTED * extent) | (size > LARGEST_SQUARE * extent)
     for left_out, why in (
         (~finite, "with coordinates that are not numbers"),
         (finite & ~somewhere, f"with coordinates beyond {LARGEST_COORDINATE:.0e}"),
         (small & (area == 0.0), "without area"),
         (small & (area > 0.0), f"without area to speak of in a scene of {extent:.1e}"),
+        (vast & ~small, f"too large beside the rest of the scene, for which rays are fine in {extent:.1e},"),
     ):
         if left_out.any():
             warnings.append(f"{mesh.name}: {int(left_out.sum())} triangles {why} left out")
-    return np.flatnonzero(somewhere & ~small)
+    return np.flatnonzero(somewhere & ~small & ~vast)
+
+
+def _sizes(corners: Floats) -> tuple[Floats, Floats]:
+    """Sizes of triangles (t, 3, 3), and the same times the sines of their normals' angles to the nearest axis, (t,)."""
+    somewhere = _somewhere(corners).all(axis=1)
+    size = np.zeros(len(corners))
+    size[somewhere] = np.ptp(corners[somewhere], axis=1).max(axis=1)
+    some = np.flatnonzero(size > 0.0)
+    unit = corners[some] / size[some, None, None]
+    normal = np.abs(normalized(cross(unit[:, 1] - unit[:, 0], unit[:, 2] - unit[:, 0])))
+    slanted = np.zeros(len(corners))
+    slanted[some] = size[some] * lengths(np.sort(normal, axis=1)[:, :2])
+    return size, slanted
 
 
 def _no_face(scene: Scene) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import RayLibraryError
+from .geometry import frame
 from .sampling import Singles
 from .scene import Floats, Ints
 from .transmittance import Transmittance
@@ -156,10 +157,7 @@ class RayScene:
         transmittance: Transmittance | None = None,
     ) -> None:
         self.workers = Workers(threads)
-        used = points[triangles.ravel()]
-        low, high = used.min(axis=0), used.max(axis=0)
-        self._centre = (low + high) / 2.0
-        extent = float((high - low).max())
+        self._centre, extent = frame(points[triangles.ravel()])
         self.scale = 1.0 / extent if extent > 0.0 else 1.0
         self.rays = 0
         self.seconds = 0.0

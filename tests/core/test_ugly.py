@@ -22,7 +22,7 @@ from radiosity_bake.core.scene import AreaLamp, PointLamp, Scene, SunLamp, surfa
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
 
-from tests.core.building import DARK
+from tests.core.building import DARK, block, crosses, mesh_area
 from tests.scenes import exact
 from tests.scenes.ugly import UglyScene, ugly_scenes
 
@@ -170,10 +170,51 @@ def test_what_is_too_large_for_the_rest_of_the_scene_is_named_where_nothing_is_l
 
 
 def test_what_is_too_large_is_named_though_it_is_too_thin_to_be_left():
-    # Its area is nothing to speak of, either, and yet it is what the scene's size comes from.
-    long = surface_mesh("long", [(0, 0, -5), (1e11, 0, -5), (0, 1e-7, -5)], [(0, 1, 2)], baked=False)
+    # Their areas are nothing to speak of, either, and yet they are what the scene's size comes from.
+    corners = [(0, 0, -5), (1e11, 0, -5), (0, 1e-7, -5)]
+    long = surface_mesh("long", np.tile(corners, (3, 1)), np.arange(9).reshape(3, 3), baked=False)
     with pytest.raises(NothingToBakeError, match=r'too small beside "long", which reaches 1\.0e\+11 far'):
         bake(Scene((FLOOR, long), WHITE), COARSE)
+
+
+def light_of_room(room, lamp):
+    """Mean irradiance of a room's own twelve triangles, whatever else its mesh has."""
+    result = bake(Scene((room, lamp), DARK), BakeSettings(quality="DRAFT", keep_transport=False))
+    mesh = result.meshes[0]
+    own = mesh.parent_triangle < 12
+    return np.average(mesh.irradiance[own].mean(axis=(1, 2)), weights=mesh_area(mesh)[own]), result.report["warnings"]
+
+
+@pytest.mark.parametrize("far", [1e4, 1e6, 1e9])
+@pytest.mark.parametrize("kind", ["loose", "square to an axis", "slanted"])
+def test_a_stray_vertex_far_away_leaves_the_light_of_its_own_mesh_as_it_is(far, kind):
+    room = exact.closed_room((2, 2, 2), reflectance=0.5)
+    lamp = exact.rectangle("lamp", (0.7, 0.7, 1.95), (0, 0.6, 0), (0.6, 0, 0), emission=5.0)
+    away = [(3.0, 0.0, 0.0), (far, far, 0.0), (far, 0.0, far if kind == "slanted" else 0.0)]
+    face = [] if kind == "loose" else [(8, 9, 10)]
+    vertices, triangles = np.concatenate([room.vertices, away]), [*room.triangles.tolist(), *face]
+    strayed = surface_mesh("room", vertices, triangles, reflectance=0.5)
+    (alone, _), (beside, warnings) = (light_of_room(mesh, lamp) for mesh in (room, strayed))
+    # Both are drawn with rays of their own where a face more is there: a few in a thousand at DRAFT.
+    assert beside == pytest.approx(alone, rel=0.01)
+    left_out = far > {"loose": np.inf, "square to an axis": 1e6, "slanted": 1e4}[kind]
+    assert any("room: 1 triangles too large beside" in told for told in warnings) == left_out
+
+
+@pytest.mark.parametrize("quality", ["DRAFT", "GOOD"])
+def test_a_block_is_lit_alike_on_a_ground_however_wide(quality):
+    sides = []
+    for wide in (1e2, 1e6):
+        ground = exact.rectangle("ground", (-wide, -wide, 0), (2 * wide, 0, 0), (0, 2 * wide, 0), reflectance=0.5)
+        result = bake(Scene((ground, block("block", (0, 0, 0), (1, 1, 1))), WHITE), BakeSettings(quality=quality))
+        mesh = result.meshes[1]
+        upright = np.abs(crosses(mesh.vertices, mesh.triangles)[:, 2]) < mesh_area(mesh)
+        sides.append(np.average(mesh.irradiance[upright].mean(axis=(1, 2)), weights=mesh_area(mesh)[upright]))
+        assert abs(result.report["energy"]["imbalance"]) < 0.01
+    # Half is of the sky, which is exact; of the other half each estimate is good for 2% at DRAFT.
+    assert sides[1] == pytest.approx(sides[0], rel=0.02)
+    # A plain without end gives back half, less what the block keeps from it.
+    assert 0.7 < sides[1] < 0.75
 
 
 def test_many_slivers_have_no_more_pieces_than_there_is_room_for(monkeypatch):
