@@ -27,7 +27,7 @@ from .attributes import Attributes, attributes_of, attributes_to_be
 from .bake import counted, reason_not_to_bake, shown_report, trace
 from .doors import TwoDoors, run_to_end
 from .extraction import Extraction, extract
-from .files import check_writable, is_whole_blend, replaced
+from .files import check_spared, check_writable, files_in_use, is_whole_blend, replaced
 from .in_place import values_in_place
 from .job import Bake
 from .journal import Journal
@@ -93,16 +93,16 @@ class FrameRange:
         objects: Iterable[bpy.types.Object],
         settings: BakeSettings,
         frames: range,
-        files: Path | None = None,
+        files: Iterable[Path] | None = None,
     ) -> None:
-        """Prepare to bake `objects` at `frames`; `files` is the .blend whose name those of the frames are made of.
+        """Prepare to bake `objects` at `frames`; `files` are the .blend files that these are written to, if any.
 
         Raises
         ------
         FrameError
             When there are no frames.
         FileError
-            When a file cannot be written.
+            When a file cannot be written, or is one that the scene is read from.
         """
         if not len(frames):
             raise FrameError("The range of frames is empty: its last frame comes before its first")
@@ -111,7 +111,7 @@ class FrameRange:
         self._names = {source_of(obj).session_uid: source_of(obj).name for obj in objects}
         self._settings = settings
         self._frames = frames
-        self._files = files
+        self._files = None if files is None else dict(zip(frames, files, strict=True))
         self._next = 0
         self._kept: KeptTransport | NotKept | None = None
         self._frame: tuple[Extraction, float] | None = None
@@ -121,8 +121,9 @@ class FrameRange:
         scene = context.scene
         self._before = scene.frame_current, scene.frame_subframe
         self._shown_frame = self._before[0] if self._before[0] in frames else frames[0]
-        for frame in frames if files is not None else ():
-            check_writable(file_of(files, frame), "The frame")
+        for path in (self._files or {}).values():
+            check_writable(path, "The frame")
+            check_spared(path, "The frame", files_in_use())
 
     @property
     def done(self) -> bool:
@@ -217,7 +218,7 @@ class FrameRange:
 
     def _write(self, lit: LitFrame) -> None:
         self._store(lit)
-        path = file_of(self._files, lit.frame)
+        path = self._files[lit.frame]
         with replaced(path) as temporary:
             try:
                 bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
@@ -275,15 +276,15 @@ def bake_frames(
     objects: Iterable[bpy.types.Object],
     settings: BakeSettings,
     frames: range,
-    files: Path | None = None,
+    files: Iterable[Path] | None = None,
     progress: ProgressCallback = no_progress,
 ) -> dict[str, Any]:
     """Bake `objects` at each of `frames` from beginning to end, and return the report.
 
     Parameters
     ----------
-    files : Path or None
-        The .blend whose name those of the frames are made of; None keeps all frames in the open file.
+    files : iterable of Path, optional
+        The .blend file of each frame; None keeps all frames in the open file.
 
     Raises
     ------
@@ -314,16 +315,16 @@ def _light(kept: KeptTransport | NotKept | None, frame: int, number: int, count:
     return light
 
 
-def file_of(path: Path, frame: int) -> Path:
-    """Return the file of a frame: `room_0012.blend` for `room.blend`."""
-    return path.with_name(f"{path.stem}_{frame:04d}{path.suffix}")
+def files_of(path: Path, frames: range) -> list[Path]:
+    """Return the file of each frame: `room_0012.blend` for `room.blend`."""
+    return [path.with_name(f"{path.stem}_{frame:04d}{path.suffix}") for frame in frames]
 
 
 def _single(values: Mapping[str, Floats | None]) -> dict[str, np.ndarray]:
     return {name: part.astype(np.float32) for name, part in values.items() if part is not None}
 
 
-def files_of_open_file() -> Path:
+def open_file() -> Path:
     """Return the .blend that is open, beside which frames are written.
 
     Raises
@@ -365,8 +366,8 @@ class RADIOSITY_OT_bake_frames(TwoDoors, bpy.types.Operator):
     def task(self, context):
         """Return the bake of what is selected at every frame."""
         scene = context.scene
-        files = files_of_open_file() if self.frame_output == "FILES" else None
         frames = range(scene.frame_start, scene.frame_end + 1, scene.frame_step)
+        files = files_of(open_file(), frames) if self.frame_output == "FILES" else None
         return FrameRange(context, context.selected_objects, bake_settings(scene.radiosity), frames, files)
 
 

@@ -14,9 +14,9 @@ import bpy
 from ..core.errors import BakeError, Cancelled
 from ..core.progress import Progress
 from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
-from .animation import FRAME_OUTPUTS, bake_frames, file_of, summary_of
+from .animation import FRAME_OUTPUTS, bake_frames, files_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
-from .files import check_writable, is_whole_blend, replaced
+from .files import check_spared, check_writable, files_in_use, is_whole_blend, replaced
 from .participants import is_stamp, rendered_objects
 from .record import source_of
 from .settings import bake_settings, keep_settings
@@ -164,10 +164,10 @@ def _run(options: argparse.Namespace) -> None:
         bpy.ops.object.mode_set(mode="OBJECT")
     settings = _settings(options, context.scene)
     objects = _objects(options.object, context)
-    output, report_path = _paths(options)
     if options.frames is not None:
-        _run_frames(options, objects, settings, output, report_path)
+        _run_frames(options, objects, settings)
         return
+    (output,), report_path = _paths(options, None)
     report = bake_objects(context, objects, settings, _ProgressLines())
     # Who opens the output finds in its panel what it was baked with.
     keep_settings(context.scene.radiosity, settings)
@@ -175,23 +175,19 @@ def _run(options: argparse.Namespace) -> None:
     _summarise(report, output)
 
 
-def _run_frames(
-    options: argparse.Namespace,
-    objects: list[bpy.types.Object],
-    settings: BakeSettings,
-    output: Path,
-    report_path: Path | None,
-) -> None:
+def _run_frames(options: argparse.Namespace, objects: list[bpy.types.Object], settings: BakeSettings) -> None:
     context = bpy.context
     to_files = options.frames_to == "FILES"
     frames = _frames(options.frames)
+    outputs, report_path = _paths(options, frames if to_files else None)
     # Who opens one of the files finds in its panel what it was baked with.
     keep_settings(context.scene.radiosity, settings)
-    report = bake_frames(context, objects, settings, frames, output if to_files else None, _ProgressLines())
-    _write(report, None if to_files else output, report_path)
+    report = bake_frames(context, objects, settings, frames, outputs if to_files else None, _ProgressLines())
+    _write(report, None if to_files else outputs[0], report_path)
     for warning in report["warnings"]:
         print(f"Warning: {warning}")
-    print(f"{summary_of(report)}. Wrote {file_of(output, frames[0]) if to_files else output}", flush=True)
+    others = f" and {len(outputs) - 1:,} more" if len(outputs) > 1 else ""
+    print(f"{summary_of(report)}. Wrote {outputs[0]}{others}", flush=True)
 
 
 def _frames(text: str) -> range:
@@ -253,25 +249,31 @@ def _objects(names: list[str] | None, context: bpy.types.Context) -> list[bpy.ty
     return objects
 
 
-def _paths(options: argparse.Namespace) -> tuple[Path, Path | None]:
+def _paths(options: argparse.Namespace, frames: range | None) -> tuple[list[Path], Path | None]:
+    """Return the .blend files that are to be written, one for all frames or one for each, and the report."""
     source = Path(bpy.data.filepath).resolve() if bpy.data.filepath else None
     if options.output is None and not options.overwrite:
         raise CommandError("Say where to write the result with --output FILE, or --overwrite the file that was read")
     if options.output is None and source is None:
         raise CommandError("No .blend file was read that could be overwritten; give --output FILE")
     output = source if options.output is None else Path(options.output).resolve()
-    if output == source and not options.overwrite:
-        raise CommandError(f"{output} is the file that was read; give another --output, or --overwrite it")
     if output.suffix != ".blend":
         raise CommandError(f"{output} does not end in .blend")
-    check_writable(output, "The output")
+    read = [] if source is None else [source]
+    outputs = [output] if frames is None else files_of(output, frames)
+    for path in outputs:
+        if path == source and not options.overwrite:
+            raise CommandError(f"{path} is the file that was read; give another --output, or --overwrite it")
+        check_spared(path, "The output", [*([] if options.overwrite else read), *files_in_use()])
+        check_writable(path, "The output")
     if options.report is None:
-        return output, None
+        return outputs, None
     report = Path(options.report).resolve()
-    if report in (output, source):
+    if report in outputs:
         raise CommandError(f"The report {report} would replace a .blend file; give another name")
+    check_spared(report, "The report", [*read, *files_in_use()])
     check_writable(report, "The report")
-    return output, report
+    return outputs, report
 
 
 def _save(temporary: Path, output: Path) -> None:

@@ -5,9 +5,11 @@
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+import bpy
 
 from ..core.errors import BakeError
 
@@ -54,6 +56,37 @@ def check_writable(path: Path, what: str) -> None:
     finally:
         with suppress(OSError):
             probe.unlink()
+
+
+def files_in_use() -> list[Path]:
+    """Return the libraries that the open file links, and the images and other files that it reads."""
+    return [Path(path) for path in bpy.utils.blend_paths(absolute=True)]
+
+
+def check_spared(path: Path, what: str, in_use: Iterable[Path]) -> None:
+    """Refuse to write over one of the files that are read.
+
+    Parameters
+    ----------
+    path : Path
+    what : str
+        What would be written, to begin the sentence with.
+    in_use : iterable of Path
+
+    Raises
+    ------
+    FileError
+    """
+    if any(_is_same(path, other) for other in in_use):
+        raise FileError(f"{what} {path} would replace a file that the scene is read from; give another name")
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    """Return whether two names are of one file, also through links and where capitals do not count."""
+    try:
+        return path == other or path.samefile(other)
+    except OSError:
+        return False
 
 
 @contextmanager

@@ -197,6 +197,19 @@ def test_each_frame_can_have_a_file_of_its_own(room, tmp_path, monkeypatch):
             np.testing.assert_array_equal(colours_of(mesh), shown)
 
 
+def test_a_library_is_not_written_over_by_a_frame(room, tmp_path):
+    library = tmp_path / "room_0002.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(library), copy=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "room.blend"))
+    with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+        wanted.materials = ["Paint"]
+    before = library.read_bytes()
+    with pytest.raises(RuntimeError, match=r"room_0002\.blend would replace a file that the scene is read from"):
+        bake_range("FILES")
+    assert library.read_bytes() == before
+    assert not (tmp_path / "room_0001.blend").exists()
+
+
 def test_files_of_frames_need_a_file_to_lie_beside(room):
     with pytest.raises(RuntimeError, match="Save the file first"):
         bake_range("FILES")

@@ -107,6 +107,63 @@ def test_the_input_is_overwritten_only_when_asked(room, capsys):
     assert main(["--overwrite"]) == 0
 
 
+@pytest.mark.usefixtures("quick_bake")
+def test_a_frame_that_would_be_the_input_is_refused_unless_it_may_be_overwritten(room, capsys):
+    path = Path("room_0001.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=str(path.resolve()))
+    before = path.read_bytes()
+    arguments = ["--output", "room.blend", "--frames", "1:2", "--frames-to", "FILES"]
+    assert "room_0001.blend is the file that was read" in fails(arguments, capsys)
+    assert path.read_bytes() == before
+    assert main([*arguments, "--overwrite"]) == 0
+    assert names() == ["room.blend", "room_0001.blend", "room_0002.blend"]
+
+
+@pytest.fixture
+def linking_room(room):
+    """The file main.blend, which shows the cube of room.blend from there and has a lamp of its own."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(room), link=True) as (_, wanted):
+        wanted.objects = ["Cube"]
+    bpy.context.scene.collection.objects.link(wanted.objects[0])
+    add_lamp_mesh()
+    bpy.ops.wm.save_as_mainfile(filepath=str(room.with_name("main.blend")))
+    return room
+
+
+@pytest.mark.usefixtures("quick_bake")
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "--output room.blend",
+        "--output room.blend --overwrite",
+        "--output other.blend --report room.blend",
+        "--output link.blend",
+    ],
+)
+def test_a_library_is_never_written_over(linking_room, capsys, arguments):
+    Path("link.blend").symlink_to("room.blend")
+    before = linking_room.read_bytes()
+    assert "would replace a file that the scene is read from" in fails(arguments.split(), capsys)
+    assert linking_room.read_bytes() == before
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_a_library_is_not_written_over_by_a_frame(linking_room, capsys):
+    linking_room.rename("room_0002.blend")
+    bpy.data.libraries[0].filepath = "//room_0002.blend"
+    arguments = ["--output", "room.blend", "--frames", "1:2", "--frames-to", "FILES"]
+    assert "room_0002.blend would replace" in fails(arguments, capsys)
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_an_image_is_not_written_over_by_the_report(room, capsys):
+    image = bpy.data.images.new("Bricks", 1, 1)
+    image.filepath_raw, image.file_format = str(Path("bricks.png").resolve()), "PNG"
+    image.save()
+    assert "would replace" in fails(["--output", "baked.blend", "--report", "bricks.png"], capsys)
+
+
 def fails(arguments, capsys):
     """Return the sentence of a run that must fail before it bakes, and leaves no file behind."""
     before = names()
@@ -127,7 +184,7 @@ def fails(arguments, capsys):
         ("--output baked.txt", "does not end in .blend"),
         ("--output baked.blend --report missing/room.json", "there is no folder"),
         ("--output baked.blend --report baked.blend", "would replace a .blend file"),
-        ("--output baked.blend --report room.blend", "would replace a .blend file"),
+        ("--output baked.blend --report room.blend", "would replace a file that the scene is read from"),
         ("--output baked.blend --object Nobody", 'no object "Nobody"'),
         ("--output baked.blend --threshold 0", "Threshold is 0"),
         ("--output baked.blend --seed 99999999999999999999", "Seed is 99999999999999999999"),
