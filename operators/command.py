@@ -76,7 +76,9 @@ def main(argv: list[str], blend_path: str | None = None) -> int:
         0 when the files were written (or help was asked for), 1 with a sentence on stderr otherwise.
     """
     try:
-        options = _parser().parse_args(argv)
+        options = _parser().parse_args(_joined(argv))
+        if options.frames_to is not None and options.frames is None:
+            raise CommandError("--frames-to says where frames are kept; say which to bake with --frames A:B")
         if blend_path is not None:
             _open(Path(blend_path))
         _run(options)
@@ -89,6 +91,17 @@ def main(argv: list[str], blend_path: str | None = None) -> int:
         print(f"{NAME}: cancelled; nothing was written", file=sys.stderr)
         return 1
     return 0
+
+
+def _joined(argv: list[str]) -> list[str]:
+    """Return the options with `--frames -2:1` as one, which argparse would take for two: it knows `-2`, not `-2:1`."""
+    joined: list[str] = []
+    for argument in argv:
+        if joined and joined[-1] == "--frames" and argument[1:2].isdigit():
+            joined[-1] += f"={argument}"
+        else:
+            joined.append(argument)
+    return joined
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -106,12 +119,11 @@ def _parser() -> argparse.ArgumentParser:
     what = parser.add_argument_group("what is baked")
     what.add_argument("--object", metavar="NAME", action="append", help="bake this mesh only; may be given repeatedly")
     what.add_argument(
-        "--frames", metavar="A:B", help="bake every frame from A to B; a file each, or all in one (--frames-to)"
+        "--frames", metavar="A:B", help="bake every frame from A to B; all in one file, or a file each (--frames-to)"
     )
     what.add_argument(
         "--frames-to",
         choices=FRAME_OUTPUTS,
-        default="ATTRIBUTES",
         help="attributes Radiosity.0001, ... in one file (the default), or files named like --output with _0001, ...",
     )
     what.add_argument("--bake-to", choices=OUTPUTS, help="new refined meshes, or the meshes as they are")
@@ -139,14 +151,20 @@ def _parser() -> argparse.ArgumentParser:
     how.add_argument("--quality", choices=QUALITIES, help="how many rays are traced")
     how.add_argument("--seed", type=int, help="pattern of the remaining noise")
     how.add_argument("--threads", type=int, help="cores that trace rays; 0: all")
-    how.add_argument("--memory-limit", type=int, metavar="MIB", help="memory that the rays may take")
+    how.add_argument("--memory-limit", type=int, metavar="MIB", help="memory that the bake may take")
     how.add_argument("--patch-limit", type=int, metavar="N", help="patches that exchange light, at most; 0: no limit")
     return parser
 
 
 def _open(path: Path) -> None:
+    try:
+        path.stat()
+    except FileNotFoundError:
+        raise CommandError(f"There is no file {path}") from None
+    except OSError as error:
+        raise CommandError(f"{path} could not be read: {error.strerror}") from error
     if not path.is_file():
-        raise CommandError(f"There is no file {path}")
+        raise CommandError(f"{path} is not a file")
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()))
     except RuntimeError as error:

@@ -18,6 +18,9 @@ _ZSTANDARD, _END_OF_SEEKABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 _END_OF_BLEND = b"ENDB"
 """Name of the last block of one that is not compressed, which has but a header."""
 _TAIL = 64
+_BLEND = ".blend"
+_LONGEST_PATH = 1022
+"""Bytes: Blender cuts a path off after 1023, without a word, and saves to one that is a character longer."""
 _ANYONE_WRITES = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 """Marks of a folder; on Windows they tell nothing of who may write."""
 
@@ -39,6 +42,13 @@ def check_writable(path: Path, what: str) -> None:
     ------
     FileError
     """
+    try:
+        _try(path, what)
+    except OSError as error:
+        raise FileError(f"{what} {path} cannot be written ({error.strerror})") from error
+
+
+def _try(path: Path, what: str) -> None:
     if path.is_dir():
         raise FileError(f"{what} {path} is a folder; give the name of a file")
     if not path.parent.is_dir():
@@ -49,6 +59,8 @@ def check_writable(path: Path, what: str) -> None:
     if os.name == "posix" and not path.parent.stat().st_mode & _ANYONE_WRITES:
         raise FileError(f"{what} {path}: the folder {path.parent} cannot be written to (it is read-only)")
     probe = _temporary(path)
+    if path.suffix == _BLEND and max(len(os.fsencode(name)) for name in (path, probe)) > _LONGEST_PATH:
+        raise FileError(f"{what} {path} has a longer path than Blender can save to; choose a folder of a shorter one")
     try:
         probe.touch(exist_ok=False)
     except OSError as error:
@@ -116,4 +128,5 @@ def is_whole_blend(path: Path) -> bool:
 
 
 def _temporary(path: Path) -> Path:
-    return path.with_name(f".{path.stem}.{secrets.token_hex(4)}.tmp{path.suffix}")
+    """Return a name beside `path` that is short, as that of `path` may be as long as names can be."""
+    return path.with_name(f".{secrets.token_hex(8)}.tmp{_BLEND if path.suffix == _BLEND else ''}")

@@ -27,7 +27,7 @@ from .targets import Target
 from .textured import Displays
 from .transfer import nearest_corners
 
-_FRAME = re.compile(r"\.\d{4,}$")
+_FRAME = re.compile(r"\.(\d{4,}|-\d{3,})$")
 """How the name of an attribute of one frame ends."""
 
 

@@ -151,6 +151,18 @@ def test_a_shorter_range_and_an_ordinary_bake_leave_no_sets_of_an_earlier_one(ro
     assert {attribute.name for attribute in floor.data.color_attributes} == {"Radiosity", "Irradiance"}
 
 
+@pytest.mark.usefixtures("quick_bake")
+def test_frames_before_zero_are_baked_and_restored_as_others(room):
+    floor, _ = room
+    settings = BakeSettings(output="ORIGINAL")
+    bake_frames(bpy.context, room, settings, range(-1, 1))
+    assert {"Radiosity.-001", "Radiosity.0000"} <= {attribute.name for attribute in floor.data.color_attributes}
+    bake_frames(bpy.context, room, settings, range(1))
+    assert "Radiosity.-001" not in floor.data.color_attributes
+    restore(room, bpy.context.view_layer)
+    assert not floor.data.color_attributes
+
+
 def test_an_attribute_of_the_artists_with_the_name_of_a_set_comes_back(room):
     floor, _ = room
     floor.data.color_attributes.new("Radiosity.0002", "FLOAT_COLOR", "POINT")
@@ -231,6 +243,13 @@ def test_the_command_writes_a_file_for_each_frame(room, tmp_path, monkeypatch):
     saved(tmp_path, monkeypatch)
     assert main(["--frames", "1:2", "--frames-to", "FILES", "--output", "baked.blend"]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["baked_0001.blend", "baked_0002.blend", "room.blend"]
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_the_command_takes_frames_before_zero(room, tmp_path, monkeypatch):
+    saved(tmp_path, monkeypatch)
+    assert main(["--frames", "-1:0", "--frames-to", "FILES", "--output", "baked.blend"]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["baked_-001.blend", "baked_0000.blend", "room.blend"]
 
 
 @pytest.mark.parametrize(("frames", "sentence"), [("1-3", "not a range"), ("3:1", "empty")])

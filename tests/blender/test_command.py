@@ -193,6 +193,9 @@ def fails(arguments, capsys):
         ("--output baked.blend --threshold much", "invalid float value"),
         ("--output baked.blend --quality BEST", "invalid choice"),
         ("--output baked.blend --nonsense", "unrecognized arguments"),
+        (f"--output {'n' * 300}.blend", "File name too long"),
+        (f"--output baked.blend --report {'n' * 300}.json", "File name too long"),
+        ("--output baked.blend --frames-to FILES", "say which to bake with --frames"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_one_line_before_the_bake(room, capsys, arguments, sentence):
@@ -225,6 +228,18 @@ def test_a_file_that_is_no_blend_file_is_a_sentence(tmp_path, monkeypatch, capsy
     assert "room.blend could not be read" in capsys.readouterr().err
     assert main(["--output", "baked.blend"], "missing.blend") == 1
     assert "There is no file missing.blend" in capsys.readouterr().err
+    assert main(["--output", "baked.blend"], "n" * 300) == 1
+    assert "File name too long" in capsys.readouterr().err
+    assert main(["--output", "baked.blend"], ".") == 1
+    assert ". is not a file" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_the_longest_name_that_there_is_can_be_written(room):
+    name = "n" * 249 + ".blend"
+    assert main(["--output", name]) == 0
+    assert names() == [name, "room.blend"]
+    assert "Cube Radiosity" in opened(name)
 
 
 def test_a_failed_bake_writes_nothing(room, run_instead, capsys):

@@ -45,6 +45,30 @@ def test_checking_leaves_no_trace(tmp_path):
     assert names(tmp_path) == []
 
 
+@pytest.mark.parametrize("ending", [".json", ".blend", ".o" + 200 * "n"])
+def test_a_name_may_be_as_long_as_names_can_be(tmp_path, ending):
+    path = tmp_path / ("n" * (255 - len(ending)) + ending)
+    check_writable(path, "The output")
+    with replaced(path) as temporary:
+        temporary.write_text("new")
+    assert names(tmp_path) == [path.name]
+
+
+def test_a_longer_name_is_a_sentence(tmp_path):
+    with pytest.raises(FileError, match=r"The output .* cannot be written \(File name too long\)"):
+        check_writable(tmp_path / ("n" * 300 + ".blend"), "The output")
+    assert names(tmp_path) == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="elsewhere paths of that length need a special form")
+def test_a_path_that_blender_would_cut_off_is_a_sentence(tmp_path):
+    folder = tmp_path.joinpath(*["d" * 200] * 5)
+    folder.mkdir(parents=True)
+    check_writable(folder / "report.json", "The report")
+    with pytest.raises(FileError, match="has a longer path than Blender can save to"):
+        check_writable(folder / "room.blend", "The output")
+
+
 def test_a_missing_folder_is_a_sentence(tmp_path):
     with pytest.raises(FileError, match="there is no folder"):
         check_writable(tmp_path / "missing" / "room.json", "The report")
