@@ -30,6 +30,9 @@ from .transfer import nearest_corners
 _FRAME = re.compile(r"\.(\d{4,}|-\d{3,})$")
 """How the name of an attribute of one frame ends."""
 
+_SAME_NORMAL = 1.0 - 1e-6
+"""Cosine between normals above which they are those of one plane, in single precision: 0.08 degrees."""
+
 
 def check_names(obj: bpy.types.Object, attributes: Attributes) -> None:
     """Refuse an object whose vertex groups have names of ours; only attributes can be renamed for a while.
@@ -110,12 +113,17 @@ def values_in_place(
 
 
 def _gather_corners(values: Floats | None, target: Target, count: int) -> Floats | None:
-    """Return (c, 3) the mean over the triangles that meet in each face corner; a polygon's corner may have several."""
+    """Return (c, 3) the mean over the triangles that meet in each face corner; a polygon's corner may have several.
+
+    Those of a flat polygon that is not planar have several normals: there the first counts, as for Cycles' own bake.
+    """
     if values is None:
         return None
-    corners = target.local.corners.reshape(-1)
+    corners, normals = target.local.corners.reshape(-1), target.local.normals.reshape(-1, 3)
+    _, first, corner = np.unique(corners, return_index=True, return_inverse=True)
+    alike = np.flatnonzero(np.einsum("cx,cx->c", normals, normals[first[corner.ravel()]]) > _SAME_NORMAL)
+    corners, colours = corners[alike], values.reshape(-1, 3)[alike]
     times = np.maximum(np.bincount(corners, minlength=count), 1)
-    colours = values.reshape(-1, 3)
     sums = [np.bincount(corners, weights=colours[:, k], minlength=count) for k in range(3)]
     return np.stack(sums, axis=1) / times[:, None]
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ..core.scene import Floats, Ints
 
@@ -25,7 +26,8 @@ class LocalMesh:
     triangles, corners : (t, 3) int
         Vertices and face corners of the mesh ("loops") at the corners of each triangle.
     normals : (t, 3, 3) float, unit
-        Shading normals at the corners of each triangle, in single precision as Blender has them.
+        Shading normals at the corners of each triangle, in single precision as Blender has them; of a triangle that
+        Cycles renders flat its own, which differs from its face's where that is not planar.
     slots : (t,) int
         Material index of each triangle.
     vertex_of_corner : (c,) int
@@ -58,15 +60,54 @@ def local_mesh(mesh: bpy.types.Mesh) -> LocalMesh:
     mesh.vertices.foreach_get("co", vertices.reshape(-1))
     mesh.corner_normals.foreach_get("vector", normals.reshape(-1))
     mesh.loops.foreach_get("vertex_index", vertex_of_corner)
+    normals = normals[corners]
+    flat = np.flatnonzero(_rendered_flat(mesh))
+    normals[flat] = _own_normals(vertices[triangles[flat]])[:, None]
     return LocalMesh(
         vertices=vertices.astype(np.float64),
         triangles=triangles.astype(np.int64),
         corners=corners.astype(np.int64),
-        normals=normals[corners],
+        normals=normals,
         slots=slots.astype(np.int64),
         vertex_of_corner=vertex_of_corner.astype(np.int64),
         materials=tuple(mesh.materials),
     )
+
+
+def _rendered_flat(mesh: bpy.types.Mesh) -> NDArray[np.bool_]:
+    """Return (t,) bool whether Cycles shades each triangle by its own normal.
+
+    It does so for faces that are flat, but takes the normals of corners, all over the mesh, where some are custom or
+    where edges are sharp between faces of which some are smooth.
+    """
+    count = len(mesh.loop_triangles)
+    if mesh.normals_domain == "FACE":
+        return np.ones(count, dtype=bool)
+    sharp = mesh.attributes.get("sharp_face")
+    if sharp is None or mesh.has_custom_normals or _has_sharp_edges(mesh):
+        return np.zeros(count, dtype=bool)
+    flat_face = np.empty(len(mesh.polygons), dtype=bool)
+    sharp.data.foreach_get("value", flat_face)
+    face_of_triangle = np.empty(count, dtype=np.int32)
+    mesh.loop_triangles.foreach_get("polygon_index", face_of_triangle)
+    return flat_face[face_of_triangle]
+
+
+def _has_sharp_edges(mesh: bpy.types.Mesh) -> bool:
+    sharp = mesh.attributes.get("sharp_edge")
+    if sharp is None:
+        return False
+    values = np.empty(len(mesh.edges), dtype=bool)
+    sharp.data.foreach_get("value", values)
+    return bool(values.any())
+
+
+def _own_normals(corners: Floats) -> Floats:
+    """Return the unit normals of triangles (t, 3, 3), zero where they have no area."""
+    a, b, c = corners.astype(np.float64).transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0.0)
 
 
 def fingerprint(data: bpy.types.ID | None) -> bytes:

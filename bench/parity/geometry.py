@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import bpy
@@ -245,3 +246,16 @@ def back_of_mirrored_sheet() -> list[Any]:
     sheet = sheet_between_lamps()
     sheet.scale = (-1.0, 1.0, 1.0)
     return [sheet]
+
+
+@case("Flat faces that are not planar")
+def bent_faces() -> list[Any]:
+    """A hilly ground, each face of which is two triangles that lean against each other, under a low sun and a sky."""
+    ground = stage.grid("Ground", 2.0, 2.0, 8, stage.paint())
+    for vertex in ground.data.vertices:
+        x, y, _ = vertex.co
+        vertex.co.z = 0.06 * (math.sin(5.0 * x) * math.cos(4.0 * y) + math.sin(17.0 * x * y))
+    stage.lamp("SUN", turn=(0.6, 0.5, 0.0), angle=0.02)
+    stage.world((0.5, 0.6, 0.8), 0.3)
+    stage.camera((1.8, -1.8, 1.8), (0.0, 0.0, 0.0), 40.0)
+    return [ground]
