@@ -20,7 +20,7 @@ from .form_factors import point_to_triangle
 from .geometry import order_along_curve
 from .lit_points import LitPoints
 from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
-from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, SunLamp
+from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, Profile, SunLamp
 from .visibility import OFFSET, RayScene, spread_of_rays
 
 FEW_LAMPS = 32
@@ -35,6 +35,9 @@ NEAR = 2.0
 PLACES = 256
 """Places of a lamp that are added up where its light has no closed form. A straight edge, such as the horizon's, cuts
 off a share that is wrong by 0.8 * 0.5 * 256**-0.75 = 0.6% of the lamp (`LATTICE_ERROR`)."""
+
+PROFILE_PLACES = 16
+"""Places of a lamp over which its profile is averaged where the rest has a closed form: it changes slowly over them."""
 
 PAIRS_AT_ONCE = 2**17
 """Many lamps times receivers whose working arrays stay in a core's second cache."""
@@ -268,7 +271,7 @@ class _EvenPoints:
 
 @lru_cache(maxsize=4)
 def _even_points(lamps: tuple[Lamp, ...]) -> _EvenPoints:
-    found = [(k, lamp) for k, lamp in enumerate(lamps) if isinstance(lamp, PointLamp) and lamp.cone is None]
+    found = [(k, lamp) for k, lamp in enumerate(lamps) if isinstance(lamp, PointLamp) and lamp.is_even]
     return _EvenPoints(
         np.array([k for k, _ in found], dtype=np.int64),
         np.array([lamp.centre for _, lamp in found], dtype=np.float64).reshape(-1, 3),
@@ -341,6 +344,9 @@ def unoccluded(lamp: Lamp, points: Floats, normals: Floats) -> Floats:
             above = np.flatnonzero(height >= reach)
             facing = shapes.weight[above] / (square + radius_square)[above]
             light[above] = facing * height[above] / np.sqrt(np.maximum(square[above], TINY)) / np.pi
+            if isinstance(lamp, PointLamp) and lamp.profile is not None:
+                above = above[light[above] > 0.0]
+                light[above] *= _mean_in_profile(lamp, lamp.profile, points[above])
             summed = summed[height[summed] < reach[summed]]
     summed = summed[_in_beam(lamp, points[summed])]
     places = 1 if _is_sharp(lamp) else PLACES
@@ -427,6 +433,8 @@ def _kernel(lamp: Lamp, facing: Floats, normals: Floats, ways: Floats) -> Floats
     kernel: Floats = height * front / (square * square)
     if isinstance(lamp, PointLamp) and lamp.cone is not None:
         kernel *= _in_cone(lamp.cone, -ways)
+    if isinstance(lamp, PointLamp) and lamp.profile is not None:
+        kernel *= _in_profile(lamp.profile, -ways)
     if isinstance(lamp, AreaLamp) and lamp.spread < np.pi:
         half = lamp.spread / 2.0
         tangent = np.sqrt(np.maximum(square - front**2, 0.0)) / np.maximum(front, TINY)
@@ -459,6 +467,34 @@ def _in_cone(cone: Cone, directions: Floats) -> Floats:
     step = np.clip(inside, 0.0, 1.0)
     share: Floats = step * step * (3.0 - 2.0 * step)
     return share
+
+
+def _in_profile(profile: Profile, directions: Floats) -> Floats:
+    """Share of a lamp's light that leaves in directions (n, r, 3) of any length, linear between those told, (n, r)."""
+    local = directions @ profile.inverse.T
+    away = np.arctan2(np.hypot(local[..., 0], local[..., 1]), -local[..., 2])
+    turn = np.arctan2(local[..., 1], local[..., 0])
+    rows, columns = profile.shares.shape
+    row = np.clip(away * (rows / profile.reach) - 0.5, 0.0, rows - 1.0)
+    column = np.mod(turn * (columns / (2.0 * np.pi)), columns)
+    above, left = row.astype(np.int64), column.astype(np.int64)
+    below, right = np.minimum(above + 1, rows - 1), np.mod(left + 1, columns)
+    left = np.mod(left, columns)
+    down, aside = row - above, column - np.floor(column)
+    shares = profile.shares
+    first = (1.0 - aside) * shares[above, left] + aside * shares[above, right]
+    second = (1.0 - aside) * shares[below, left] + aside * shares[below, right]
+    share: Floats = (1.0 - down) * first + down * second
+    return share
+
+
+def _mean_in_profile(lamp: PointLamp, profile: Profile, points: Floats) -> Floats:
+    """Share of a lamp's light that leaves to points, in the mean over all of the lamp that they see, (n,)."""
+    places = 1 if _is_sharp(lamp) else PROFILE_PLACES
+    size = PLACES_AT_ONCE // places
+    parts = [points[k : k + size] for k in range(0, len(points), size)]
+    shares = [_in_profile(profile, -_ways(lamp, at, places, np.full((len(at), 2), 0.5))).mean(axis=1) for at in parts]
+    return np.concatenate([np.zeros(0), *shares])
 
 
 def _visible_share(lamp: Lamp, rays: RayScene, at: LitPoints, ways: Floats) -> tuple[Floats, Floats]:

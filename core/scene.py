@@ -183,6 +183,26 @@ class Cone:
 
 
 @dataclass(frozen=True, eq=False)
+class Profile:
+    """How bright a lamp is to each side, as of a measured one or one with a slide.
+
+    Attributes
+    ----------
+    inverse : (3, 3) float
+        Takes directions of the world to the lamp's own space, in which its axis is -z.
+    reach : float, radians
+        Up to which angle from the axis it is told.
+    shares : (rows, columns) float, 0..1
+        Of the strength: rows in the middles of even steps from the axis to the reach, columns at even steps from +x
+        to +y.
+    """
+
+    inverse: Floats
+    reach: float
+    shares: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class PointLamp:
     """A lamp that shines to all sides, or as a spot. Rays do not meet it.
 
@@ -193,13 +213,14 @@ class PointLamp:
     radius : float, scene units
         0 casts hard shadows.
     strength : (3,) float, W sr^-1
-        Radiant intensity in linear RGB, where the cone takes nothing away.
+        Radiant intensity in linear RGB, where cone and profile take nothing away.
     soft : bool
         Whether it is a disk that faces whoever looks at it, in place of a sphere.
     cone : Cone or None
     shadow : bool
         Whether surfaces hide it.
     linking : LightLinking
+    profile : Profile or None
     """
 
     name: str
@@ -210,6 +231,12 @@ class PointLamp:
     cone: Cone | None = None
     shadow: bool = True
     linking: LightLinking = UNLINKED
+    profile: Profile | None = None
+
+    @property
+    def is_even(self) -> bool:
+        """Whether it shines to all sides alike."""
+        return self.cone is None and self.profile is None
 
 
 @dataclass(frozen=True, eq=False)

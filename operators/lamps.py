@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender's lamps mean for radiosity: shape, strength and direction, in the units that Cycles gives them."""
 
+from typing import NamedTuple
+
 import bpy
 import numpy as np
 
 from ..core.scene import AreaLamp, Cone, Floats, Lamp, PointLamp, SunLamp
+from .lamp_profiles import may_have_profile
 from .materials import constant_emission, uses_nodes
 
 SMALLEST_SPREAD = np.radians(1.0)
@@ -18,10 +21,30 @@ LARGEST_SUN = np.radians(120.0)
 """Radians of a sun's diameter above which it is no disk any more that a few rays could stand for."""
 
 
-def lamp_of(obj: bpy.types.Object, matrix: Floats) -> tuple[Lamp | None, tuple[str, ...]]:
-    """Return what a lamp does, and clauses that say what was skipped or guessed.
+class ReadLamp(NamedTuple):
+    """What a lamp does.
 
-    None where it gives no light to surfaces: a portal, or one that is hidden from diffuse rays.
+    Attributes
+    ----------
+    lamp : Lamp or None
+        None where it gives no light to surfaces: a portal, or one that is hidden from diffuse rays.
+    notes : tuple of str
+        Clauses that say what was skipped or guessed.
+    unread : tuple of str
+        Clauses on nodes that make it brighter in one direction than in another, which Cycles may evaluate; the lamp is
+        as it were without nodes then.
+    factor : (3,) float
+        What is known of its nodes, where there are some that are unread.
+    """
+
+    lamp: Lamp | None
+    notes: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
+    factor: Floats = np.ones(3)
+
+
+def lamp_of(obj: bpy.types.Object, matrix: Floats) -> ReadLamp:
+    """Return what a lamp does.
 
     Parameters
     ----------
@@ -32,21 +55,23 @@ def lamp_of(obj: bpy.types.Object, matrix: Floats) -> tuple[Lamp | None, tuple[s
     """
     light = obj.data
     if not obj.visible_diffuse:
-        return None, ()
+        return ReadLamp(None)
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
-        return None, ()
-    factor, notes = constant_emission(light) if uses_nodes(light) else (np.ones(3), ())
-    notes = (*notes, *_limits(light))
-    power = factor * _power(light)
+        return ReadLamp(None)
+    factor, unread = constant_emission(light) if uses_nodes(light) else (np.ones(3), ())
+    limits = tuple(_limits(light))
     axes, centre = matrix[:3, :3], matrix[:3, 3].copy()
+    if unread and np.linalg.det(axes) != 0.0 and may_have_profile(light):
+        return ReadLamp(_point_lamp(obj, centre, axes, _power(light)), limits, unread, factor)
+    power, notes = factor * _power(light), (*unread, *limits)
     if light.type == "SUN":
-        return _sun_lamp(obj, axes, power), notes
+        return ReadLamp(_sun_lamp(obj, axes, power), notes)
     if np.linalg.det(axes) == 0.0 and light.type in {"AREA", "SPOT"}:
-        return None, (*notes, "its scale is 0, and it gives no light")
+        return ReadLamp(None, (*notes, "its scale is 0, and it gives no light"))
     if light.type == "AREA":
         lamp = _area_lamp(obj, centre, axes, power)
-        return lamp, notes if lamp is not None else (*notes, "its size is 0, and it gives no light")
-    return _point_lamp(obj, centre, axes, power), notes
+        return ReadLamp(lamp, notes if lamp is not None else (*notes, "its size is 0, and it gives no light"))
+    return ReadLamp(_point_lamp(obj, centre, axes, power), notes)
 
 
 def _sun_lamp(obj: bpy.types.Object, axes: Floats, power: Floats) -> SunLamp:

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Links of node trees, followed in and out of groups."""
 
+from collections.abc import Iterator
+
+import bpy
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,3 +56,20 @@ def title_of(node) -> str:
 def value_of(socket) -> float | NDArray[np.float64]:
     value = socket.default_value
     return float(value) if isinstance(value, float | int) else np.array(value[:3], dtype=np.float64)
+
+
+def all_trees(tree: bpy.types.NodeTree) -> Iterator[bpy.types.NodeTree]:
+    """Yield a node tree and those of its groups."""
+    yield tree
+    for node in tree.nodes:
+        if node.type == "GROUP" and node.node_tree is not None:
+            yield from all_trees(node.node_tree)
+
+
+def own_trees(tree: bpy.types.NodeTree) -> Iterator[bpy.types.NodeTree]:
+    """Yield a node tree and those of its groups, which become copies of their own."""
+    yield tree
+    for node in tree.nodes:
+        if node.type == "GROUP" and node.node_tree is not None:
+            node.node_tree = node.node_tree.copy()
+            yield from own_trees(node.node_tree)

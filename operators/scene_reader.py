@@ -4,15 +4,16 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
 
-from ..core.scene import Floats, Lamp, LightGroup, SurfaceMesh
+from ..core.scene import Floats, Lamp, LightGroup, PointLamp, SurfaceMesh
 from .appearance import Appearance, Colouring
 from .display import is_display
-from .lamps import lamp_of
+from .lamp_profiles import NoProfileError, Profiles, profiles_of, unturned, with_profile
+from .lamps import ReadLamp, lamp_of
 from .layers import Layers, joined_layers, layers_of
 from .linking import light_linking, linked_objects
 from .local_mesh import LocalMesh, fingerprint, local_mesh, placed, turned_over
@@ -65,6 +66,16 @@ class _Entry:
     random: float
 
 
+class _LampEntry(NamedTuple):
+    """A lamp that the dependency graph shows: its object, what was read of it, its place, and as of `_Entry`."""
+
+    original: bpy.types.Object
+    read: ReadLamp
+    matrix: Floats
+    light_group: str
+    makers: tuple[bpy.types.Object, ...]
+
+
 class SceneReader:
     """Goes once over everything that a dependency graph shows."""
 
@@ -87,6 +98,9 @@ class SceneReader:
         self._left_out: dict[str, None] = {}
         self._users_of_lamp_note: dict[str, dict[str, None]] = {}
         self.meshes: list[SurfaceMesh] = []
+        self._lamp_entries: list[_LampEntry] = []
+        self._profiles: dict[Any, Profiles] = {}
+        self._evaluated_lamps: dict[str, None] = {}
         self.lamps: list[Lamp] = []
         self._groups_of_meshes: list[str] = []
         self._groups_of_lamps: list[str] = []
@@ -105,6 +119,7 @@ class SceneReader:
     def read(self) -> None:
         """Fill `meshes`, `lamps` and `targets`, in an order that does not depend on how the graph was built."""
         entries = sorted(self._entries(), key=lambda entry: entry.order)
+        self._read_lamps()
         colours = self._colouring.appearances([(e.original, e.local, e.materials, e.matrix, e.random) for e in entries])
         for entry, appearance in zip(entries, colours, strict=True):
             self._add(entry, appearance)
@@ -166,14 +181,17 @@ class SceneReader:
         return sentences
 
     def evaluated(self) -> list[str]:
-        """Return a sentence for each material that Blender evaluated."""
-        return [
+        """Return a sentence for each material that Blender evaluated, and one on lamps."""
+        sentences = [
             f'Material "{material}" of {named(users)}: {nodes}'
             for (material, nodes), users in self._colouring.users_of_evaluated.items()
         ]
+        if self._evaluated_lamps:
+            sentences.append(f"The directions in which {named(self._evaluated_lamps)} shines")
+        return sentences
 
     def _entries(self) -> Iterator[_Entry]:
-        lamps: list[tuple[Any, Lamp | None, str, tuple[bpy.types.Object, ...]]] = []
+        lamps: list[tuple[Any, _LampEntry]] = []
         for instance in self._depsgraph.object_instances:
             if not self._participants.include(instance):
                 continue
@@ -198,7 +216,8 @@ class SceneReader:
             light_group = original.lightgroup or (parent.lightgroup if parent else "")
             makers = (original,) if parent is None else (parent, original)
             if obj.type == "LIGHT":
-                lamps.append((order, self._lamp(obj, matrix) if role.seen else None, light_group, makers))
+                if role.seen:
+                    lamps.append((order, _LampEntry(original, lamp_of(obj, matrix), matrix, light_group, makers)))
                 if owner is not None:
                     self._instanced_lamps[owner.name] = None
             if obj.type != "MESH":
@@ -212,10 +231,37 @@ class SceneReader:
                 yield _Entry(
                     order, original, owner, role, local, materials, matrix, layers, light_group, makers, random
                 )
-        found = [lamp for lamp in sorted(lamps, key=lambda found: found[0]) if lamp[1] is not None]
-        self.lamps = [lamp for _, lamp, _, _ in found if lamp is not None]
-        self._groups_of_lamps = [group for _, _, group, _ in found]
-        self._makers_of_lamps = [makers for _, _, _, makers in found]
+        self._lamp_entries = [entry for _, entry in sorted(lamps, key=lambda found: found[0])]
+
+    def _read_lamps(self) -> None:
+        """Fill `lamps` with what each lamp does, now that the graph was read: nodes may have to be evaluated."""
+        for entry in self._lamp_entries:
+            for lamp in self._lamps_of(entry):
+                self.lamps.append(lamp)
+                self._groups_of_lamps.append(entry.light_group)
+                self._makers_of_lamps.append(entry.makers)
+
+    def _lamps_of(self, entry: _LampEntry) -> tuple[Lamp, ...]:
+        lamp, notes, unread, factor = entry.read
+        found = () if lamp is None else (lamp,)
+        if unread and isinstance(lamp, PointLamp):
+            light = entry.original.data
+            try:
+                axes = entry.matrix[:3, :3]
+                found = with_profile(lamp, self._profiles_of(light, unturned(light, axes)), axes)
+                self._evaluated_lamps[entry.original.name] = None
+            except NoProfileError as error:
+                notes = (*notes, *unread, f"its nodes could not be evaluated ({error})")
+                found = (replace(lamp, strength=lamp.strength * factor),)
+        for note in notes:
+            self._users_of_lamp_note.setdefault(note, {})[entry.original.name] = None
+        return found
+
+    def _profiles_of(self, light: bpy.types.Light, axes: Floats) -> Profiles:
+        key = light, axes.tobytes()
+        if key not in self._profiles:
+            self._profiles[key] = profiles_of(light, axes)
+        return self._profiles[key]
 
     def _link_lights(self, makers_of_meshes: list[tuple[bpy.types.Object, ...]]) -> None:
         """Tell all that gives light which meshes it is for."""
@@ -266,12 +312,6 @@ class SceneReader:
                 self._unreceiving[(instance.object.original.name, owner.name)] = None
             return None
         return owner
-
-    def _lamp(self, obj: bpy.types.Object, matrix: Floats) -> Lamp | None:
-        lamp, notes = lamp_of(obj, matrix)
-        for note in notes:
-            self._users_of_lamp_note.setdefault(note, {})[obj.original.name] = None
-        return lamp
 
     def _materials(self, obj: bpy.types.Object, local: LocalMesh) -> tuple[Any, ...]:
         override = self._participants.view_layer.material_override

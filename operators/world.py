@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender's world means for radiosity: one colour where it has one, else what Cycles makes of its nodes."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import bpy
@@ -13,6 +13,7 @@ from ..core.scene import Floats, SunLamp
 from ..core.world import WHOLE_FACES, SkyCube, SkySamples, split_sky, window_corners
 from .light_paths import as_diffuse_rays_see
 from .materials import constant_emission, uses_nodes
+from .node_links import all_trees, own_trees
 from .scratch import bake_in, scratch_scene
 
 FACE, LARGEST_FACE = 256, 1024
@@ -107,7 +108,7 @@ def evaluated(world: bpy.types.World, frame: int = 1) -> SkySamples:
         scene.world = world.copy()
         # No map to sample it by is needed.
         scene.world.cycles.sampling_method = "NONE"
-        trees = list(_own_trees(scene.world.node_tree))
+        trees = list(own_trees(scene.world.node_tree))
         _with_suns_of_some_size(trees)
         as_diffuse_rays_see(trees)
         size = _face_size(scene.world.node_tree)
@@ -115,15 +116,6 @@ def evaluated(world: bpy.types.World, frame: int = 1) -> SkySamples:
         windows = cube.bright_windows()
         near = _baked(scene, windows, ZOOMED) if len(windows) else np.zeros((0, ZOOMED, ZOOMED, 3))
     return cube.with_windows(windows, near)
-
-
-def _own_trees(tree: bpy.types.NodeTree) -> Iterator[bpy.types.NodeTree]:
-    """Yield a node tree and those of its groups, which become copies of their own."""
-    yield tree
-    for node in tree.nodes:
-        if node.type == "GROUP" and node.node_tree is not None:
-            node.node_tree = node.node_tree.copy()
-            yield from _own_trees(node.node_tree)
 
 
 def _with_suns_of_some_size(trees: Iterable[bpy.types.NodeTree]) -> None:
@@ -138,7 +130,7 @@ def _face_size(tree: bpy.types.NodeTree) -> int:
     """Return how many texels a face of the cube needs for the images of a tree: as fine as theirs, within reason."""
     images = [
         node.image.size[0]
-        for part in _all_trees(tree)
+        for part in all_trees(tree)
         for node in part.nodes
         if node.type in {"TEX_ENVIRONMENT", "TEX_IMAGE"} and node.image is not None
     ]
@@ -146,13 +138,6 @@ def _face_size(tree: bpy.types.NodeTree) -> int:
     while size < LARGEST_FACE and 4 * size < max(images, default=0):
         size *= 2
     return size
-
-
-def _all_trees(tree: bpy.types.NodeTree) -> Iterator[bpy.types.NodeTree]:
-    yield tree
-    for node in tree.nodes:
-        if node.type == "GROUP" and node.node_tree is not None:
-            yield from _all_trees(node.node_tree)
 
 
 def _baked(scene: bpy.types.Scene, windows: Floats, texels: int) -> Floats:

@@ -135,6 +135,41 @@ def lamp_with_nodes() -> list[Any]:
     return [floor]
 
 
+def _shining_by(light: Any, kind: str, socket: str, output: str = "Color") -> Any:
+    """Have a node make an input of a lamp's Emission shader, and return the node and the tree."""
+    tree = stage.node_tree(light)
+    shine, node = stage.shader(tree, "ShaderNodeEmission"), tree.nodes.new(kind)
+    tree.links.new(next(found for found in node.outputs if found.identifier == output), shine.inputs[socket])
+    stage.show(tree, shine)
+    return node, tree
+
+
+@case("IES file in a turned lamp")
+def lamp_with_ies_file() -> list[Any]:
+    """Measured candela, brighter to one side and dark behind."""
+    floor = stage.room()
+    light = stage.lamp("POINT", (0.1, 0.05, 1.5), (0.3, 0.2, 0.4), shadow_soft_size=0.1).data
+    measured, _ = _shining_by(light, "ShaderNodeTexIES", "Strength", "Fac")
+    sides = ("1000 1200 900 400 100 0 0", "1000 800 500 300 100 50 0", "1000 600 300 100 20 0 0")
+    lines = ["IESNA91", "TILT=NONE", "1 1000 1 7 5 1 2 0.1 0.1 0", "1 1 50", "0 15 30 60 90 135 180"]
+    measured.ies = bpy.data.texts.new("lamp.ies")
+    measured.ies.write("\n".join([*lines, "0 90 180 270 360", *(sides[k] for k in (0, 1, 2, 1, 0)), ""]))
+    measured.inputs["Strength"].default_value = 0.05
+    return [floor]
+
+
+@case("Spot lamp that throws a slide of many colours")
+def lamp_with_slide() -> list[Any]:
+    """A texture in the lamp's own coordinates."""
+    floor = stage.room()
+    turn = (0.1, 0.2, 0.7)
+    light = stage.lamp("SPOT", turn=turn, energy=6.0, shadow_soft_size=0.02, spot_size=1.6, spot_blend=0.2).data
+    slide, tree = _shining_by(light, "ShaderNodeTexNoise", "Color")
+    slide.inputs["Scale"].default_value = 2.0
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["UV"], slide.inputs["Vector"])
+    return [floor]
+
+
 @case("Mesh emitter seen from its front")
 def emitter_front() -> list[Any]:
     """A square of 0.6 m that faces the floor."""

@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's lamps: what is read of them, and that they light a room as in Cycles."""
 
+from contextlib import contextmanager
+
 import bpy
 import numpy as np
 import pytest
 from radiosity_bake.core.scene import AreaLamp, PointLamp, SunLamp
 from radiosity_bake.operators.extraction import extract
+from radiosity_bake.operators.lamp_profiles import profiles_of
+from radiosity_bake.operators.scratch import NoCyclesError
 
 from tests.blender.making import (
     add_collection,
@@ -183,6 +187,82 @@ def compare_with_cycles(floor):
     difference = np.abs(ours - theirs)
     assert ours.mean() == pytest.approx(theirs.mean(), rel=0.01)
     assert difference.mean() < 0.02 * theirs.mean()
+
+
+def add_measured_lamp(kind="POINT", **values):
+    """Return a turned lamp with the profile of an IES file, brighter to one side and dark behind."""
+    lamp = add_lamp(kind, location=(0.1, 0.05, 1.5), rotation=(0.3, 0.2, 0.4), energy=10.0, **values)
+    text = bpy.data.texts.new("lamp.ies")
+    angles = "0 15 30 60 90 135 180\n0 90 180 270 360\n"
+    sides = ("1000 1200 900 400 100 0 0\n", "1000 800 500 300 100 50 0\n", "1000 600 300 100 20 0 0\n")
+    candela = "".join(sides[k] for k in (0, 1, 2, 1, 0))
+    text.write(f"IESNA91\nTILT=NONE\n1 1000 1 7 5 1 2 0.1 0.1 0\n1 1 50\n{angles}{candela}")
+    tree = node_tree(lamp.data)
+    shine, measured = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeTexIES")
+    measured.ies, measured.inputs["Strength"].default_value = text, 0.01
+    tree.links.new(measured.outputs[0], shine.inputs["Strength"])
+    tree.links.new(shine.outputs[0], tree.nodes[0].inputs["Surface"])
+    return lamp
+
+
+@pytest.mark.parametrize(
+    ("kind", "values"),
+    [
+        ("POINT", {"shadow_soft_size": 0.1}),
+        ("POINT", {"shadow_soft_size": 0.0, "scale": (1.0, 2.0, -0.5)}),
+        ("SPOT", {"shadow_soft_size": 0.05, "spot_size": 2.0, "spot_blend": 0.3}),
+    ],
+)
+def test_a_lamp_with_an_ies_file_lights_a_room_as_in_cycles(kind, values):
+    floor = add_room()
+    add_measured_lamp(kind, **values)
+    compare_with_cycles(floor)
+    assert report()["evaluated_by_blender"] == ['The directions in which "Lamp" shines']
+
+
+def test_a_slide_in_a_spot_is_thrown_in_its_colours_as_in_cycles():
+    floor = add_room()
+    lamp = add_lamp("SPOT", rotation=(0.1, 0.2, 0.7), energy=20.0, shadow_soft_size=0.0, spot_size=1.8)
+    tree = node_tree(lamp.data)
+    shine, where, slide = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "TexCoord", "TexNoise"))
+    slide.inputs["Scale"].default_value = 2.0
+    tree.links.new(where.outputs["UV"], slide.inputs["Vector"])
+    tree.links.new(slide.outputs[1], shine.inputs["Color"])
+    tree.links.new(shine.outputs[0], tree.nodes[0].inputs["Surface"])
+    compare_with_cycles(floor)
+    lamps = lamps_read()[0]
+    assert [np.count_nonzero(lamp.strength) for lamp in lamps] == [1, 1, 1]
+
+
+def test_lamps_of_one_ies_file_are_evaluated_once_however_they_are_turned(monkeypatch):
+    lamp = add_measured_lamp()
+    for turn in (0.5, 1.0):
+        other = lamp.copy()
+        bpy.context.scene.collection.objects.link(other)
+        other.rotation_euler = (turn, 0.1, 2.0 * turn)
+    asked = []
+    monkeypatch.setattr(
+        "radiosity_bake.operators.scene_reader.profiles_of", lambda *given: asked.append(given) or profiles_of(*given)
+    )
+    lamps, warnings = lamps_read()
+    assert len(asked) == 1 and len(lamps) == 3 and not warnings
+    shares = [lamp.profile.shares for lamp in lamps]
+    assert shares[0].max() == 1.0 and shares[0].min() == pytest.approx(0.0, abs=1e-6)
+    assert not np.allclose(lamps[0].profile.inverse, lamps[1].profile.inverse)
+
+
+def test_without_cycles_a_lamp_with_an_ies_file_shines_to_all_sides_and_says_so(monkeypatch):
+    add_measured_lamp()
+
+    @contextmanager
+    def no_cycles():
+        raise NoCyclesError("Turn on Cycles")
+        yield
+
+    monkeypatch.setattr("radiosity_bake.operators.lamp_profiles.scratch_scene", no_cycles)
+    (lamp,), warnings = lamps_read()
+    assert lamp.profile is None and lamp.strength.any()
+    assert "IES Texture" in warnings[0] and "could not be evaluated (Turn on Cycles)" in warnings[1]
 
 
 def test_lamps_are_read_in_the_order_of_their_names():

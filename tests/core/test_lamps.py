@@ -15,7 +15,7 @@ from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.relight import ChangedSceneError, relight
 from radiosity_bake.core.sampling import LATTICE_ERROR
-from radiosity_bake.core.scene import AreaLamp, Cone, PointLamp, Scene, SunLamp
+from radiosity_bake.core.scene import AreaLamp, Cone, PointLamp, Profile, Scene, SunLamp
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
 from radiosity_bake.core.visibility import RayScene
@@ -131,6 +131,42 @@ def test_a_spot_that_is_turned_and_scaled_lights_an_ellipse():
     points = np.array([[1, 1.98 * tangent, 0], [1, 2.02 * tangent, 0], [1, 0, 0.98 * tangent], [1, 0, 1.02 * tangent]])
     lit = unoccluded(spot, points, np.broadcast_to([-1.0, 0, 0], (4, 3))) > 0
     assert lit.tolist() == [True, False, True, False]
+
+
+def profile_of(share, reach=np.pi, inverse=None, rows=180, columns=240):
+    """A profile that is a function of the cosine to the axis and of the turn around it."""
+    away = (np.arange(rows)[:, None] + 0.5) * reach / rows
+    turn = np.arange(columns) * 2.0 * np.pi / columns
+    return Profile(np.eye(3) if inverse is None else inverse, reach, share(np.cos(away), turn))
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.05])
+def test_a_lamp_with_a_profile_gives_each_direction_its_share(radius):
+    matrix = np.array([[0.0, 0, -1], [0, 2, 0], [1, 0, 0]])  # to shine along +x, and half as far apart along y
+    profile = profile_of(lambda z, turn: 0.5 + 0.3 * z + 0.2 * z * np.sin(turn), inverse=np.linalg.inv(matrix))
+    points = np.random.default_rng(2).normal(size=(200, 3)) * 4.0
+    lamp = PointLamp("measured", np.zeros(3), radius, WHITE, profile=profile)
+    toward = -points / np.linalg.norm(points, axis=1, keepdims=True)
+    local = points @ np.linalg.inv(matrix).T
+    z = -local[:, 2] / np.linalg.norm(local, axis=1)
+    expected = 0.5 + 0.3 * z + 0.2 * z * local[:, 1] / np.hypot(local[:, 0], local[:, 1])
+    found = unoccluded(lamp, points, toward) / unoccluded(replace(lamp, profile=None), points, toward)
+    # Linear between 1 degree and 1.5: an eighth of the square of the step times the curvature, at the axis half a step.
+    # A lamp that is seen as up to 1.4 degrees more is a mean over as much.
+    seen = np.linalg.norm(points, axis=1) > 2.0
+    np.testing.assert_allclose(found[seen], expected[seen], atol=0.01)
+
+
+def test_a_profile_counts_where_a_lamp_is_cut_by_the_horizon_and_among_many_lamps():
+    profile = profile_of(lambda z, turn: np.broadcast_to(0.25, (len(z), len(turn))))
+    low = PointLamp("low", np.array([0.0, 0.0, 0.1]), 0.3, WHITE)
+    points = np.array([[1.0, 0.0, 0.0], [0.0, 0.7, 0.0]])
+    shaded = replace(low, profile=profile)
+    np.testing.assert_allclose(from_above(shaded, points), 0.25 * from_above(low, points), rtol=1e-9)
+    lamps = tuple(replace(POINT, centre=np.array([0.1 * k, 0.0, 1.5])) for k in range(40))
+    all_shaded = tuple(replace(lamp, profile=profile) for lamp in lamps)
+    (whole, _), (quarter, _) = (direct([FLOOR], some, spread(20)) for some in (lamps, all_shaded))
+    np.testing.assert_allclose(quarter, 0.25 * whole, rtol=1e-6)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.01, 0.5])
@@ -255,6 +291,7 @@ def test_relighting_gives_what_a_bake_with_the_lamps_new_colour_gives():
     [
         (lambda lamp: (replace(lamp, centre=lamp.centre + 0.1),), '"ball" was changed or moved'),
         (lambda lamp: (replace(lamp, cone=Cone(np.eye(3), 0.5, 0.1)),), '"ball" was changed or moved'),
+        (lambda lamp: (replace(lamp, profile=Profile(np.eye(3), 3.0, np.eye(4))),), '"ball" was changed or moved'),
         (lambda lamp: (), "Lamps, or bright parts of the World, were added, removed or hidden"),
         (lambda lamp: (lamp, lamp), "Lamps, or bright parts of the World, were added, removed or hidden"),
     ],
