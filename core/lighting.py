@@ -19,7 +19,7 @@ from .cutting import CutEdges, cut_faces, drawn_to_cut, values_on_outlines
 from .direct import Emitters
 from .direct_light import DirectLight
 from .error_estimate import Expected, relative_error
-from .errors import NoLightError
+from .errors import NO_LIGHT, NoLightError
 from .gather import Gathered, look_again
 from .interpolation import InterpolatedRadiance, PlacesOnFaces
 from .lit import Lit
@@ -113,9 +113,7 @@ def check_light(surfaces: Surfaces) -> None:
     """
     lamps = any(lamp.strength.any() for lamp in surfaces.lamps)
     if not (lamps or surfaces.emission.any() or surfaces.world.any()):
-        raise NoLightError(
-            "Nothing in the scene emits light; add a lamp, or give a material some Emission or the World a colour"
-        )
+        raise NoLightError(NO_LIGHT)
 
 
 def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:

@@ -177,6 +177,24 @@ def shapes_of(scene: Scene) -> tuple[bytes, ...]:
     return (*(shape_of(mesh) for mesh in scene.meshes), *(shape_of_lamp(lamp) for lamp in scene.lamps))
 
 
+def sources_of(scene: Scene) -> NDArray[np.bool_]:
+    """Which lamps give light, which triangles of the meshes, the world, and whether that differs by direction.
+
+    A bake can be relit, as far as this tells, by no more than gave light in it.
+    """
+    lamps = [lamp.strength.any() for lamp in scene.lamps]
+    faces = [_gives_light(mesh) for mesh in scene.meshes]
+    return np.concatenate([np.array(lamps, dtype=bool), *faces, [scene.world.any(), scene.world.ndim > 1]])
+
+
+def _gives_light(mesh: SurfaceMesh) -> NDArray[np.bool_]:
+    gives, texture = mesh.emission.any(axis=1), mesh.emission_texture
+    if texture is not None:
+        ends = np.cumsum(texture.along**2)
+        gives[texture.triangle] = [part.any() for part in np.split(texture.colours, ends[:-1])]
+    return gives
+
+
 def relight(kept: KeptTransport, scene: Scene, progress: ProgressCallback = no_progress) -> BakeResult:
     """Give the scene that was baked other light: solve again, and look up again what its rays met.
 

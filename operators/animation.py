@@ -17,10 +17,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..core.errors import BakeError
+from ..core.darkness import darkness
+from ..core.errors import NO_LIGHT, BakeError, Cancelled, NoLightError
 from ..core.progress import Progress, ProgressCallback, no_progress
 from ..core.relight import ChangedSceneError, KeptTransport, NotKept, relight
-from ..core.result import BakeResult
+from ..core.result import BakedMesh, BakeResult
 from ..core.scene import Floats, Scene
 from ..core.settings import BakeSettings
 from .attributes import Attributes, attributes_of, attributes_to_be
@@ -36,6 +37,7 @@ from .refined import values_of_corners
 from .sets import add_sets
 from .settings import bake_settings
 from .store import ChangedMeanwhileError, check_storable, check_unchanged, scene_of, store, view_layer_of
+from .survey import Survey
 from .targets import baked_targets
 from .transports import remember
 
@@ -52,6 +54,10 @@ FRAME_OUTPUT_ITEMS = (
     ),
     ("FILES", "Files", "Write a copy of this file for each frame, with that frame's light, beside it"),
 )
+
+
+_NAMED = 5
+"""Frames that a sentence names at most."""
 
 
 class FrameError(BakeError):
@@ -78,6 +84,20 @@ class LitFrame:
     read: float
 
 
+@dataclass(frozen=True, eq=False)
+class TracedFrame:
+    """What the frames that come after a traced one take from it.
+
+    Attributes
+    ----------
+    kept : KeptTransport or NotKept or None
+    meshes : tuple of BakedMesh
+    """
+
+    kept: KeptTransport | NotKept | None
+    meshes: tuple[BakedMesh, ...]
+
+
 class FrameRange:
     """The bake of some frames: a task of a step for each.
 
@@ -85,7 +105,11 @@ class FrameRange:
     """
 
     purpose = "go on with the frames"
-    cancelled = "Bake of the frames cancelled"
+
+    @property
+    def cancelled(self) -> str:
+        """The sentence on a bake that was cancelled."""
+        return f"Bake of the frames cancelled{files_before(self._written)}"
 
     def __init__(
         self,
@@ -112,10 +136,16 @@ class FrameRange:
         self._settings = settings
         self._frames = frames
         self._files = None if files is None else dict(zip(frames, files, strict=True))
-        self._next = 0
-        self._kept: KeptTransport | NotKept | None = None
-        self._frame: tuple[Extraction, float] | None = None
-        self._told: list[dict[str, Any]] = []
+        # Refined meshes in one file are those of one tracing.
+        self._one_tracing = files is None and settings.output == "REFINED"
+        self._survey = Survey()
+        self._to_look_at = list(frames) if self._one_tracing and len(frames) > 1 else []
+        self._to_light = list(frames)
+        self._dark: list[int] = []
+        self._traced: TracedFrame | None = None
+        self._read: tuple[Extraction, float] | None = None
+        self._told: dict[int, dict[str, Any]] = {}
+        self._written = 0
         self._sets: dict[int, Sets] = {}
         self._shown: LitFrame | None = None
         scene = context.scene
@@ -128,29 +158,36 @@ class FrameRange:
     @property
     def done(self) -> bool:
         """Whether all frames were taken."""
-        return self._next == len(self._frames)
+        return not self._to_light
 
     def begin(self) -> tuple[Scene, BakeSettings, Bake]:
-        """Go to the next frame, and return what lights it.
+        """Go to the next frame, and return what lights it, or what looks at it alone.
 
         Raises
         ------
         BakeError
-            As the extraction raises it.
+            As the extraction raises it, or where the frames cannot share one tracing that they must share.
         """
         began = time.perf_counter()
-        frame = self._frames[self._next]
-        with named(frame):
-            scene = scene_of(self._scene_uid)
-            view_layer = view_layer_of(scene, self._view_layer)
-            scene.frame_set(frame)
-            objects = self._objects()
-            with bpy.context.temp_override(scene=scene, view_layer=view_layer):
-                extraction = extract(bpy.context, objects, self._settings.output)
-            check_storable(extraction, attributes_to_be(self._settings, extraction.scene))
-        self._frame = extraction, time.perf_counter() - began
+        frame = (self._to_look_at or self._to_light)[0]
+        with named(frame, self._written):
+            extraction = self._extracted(frame)
+        self._read = extraction, time.perf_counter() - began
         settings = replace(self._settings, keep_transport=True)
-        return extraction.scene, settings, _light(self._kept, frame, self._next, len(self._frames))
+        if self._to_look_at:
+            return extraction.scene, settings, _looking(frame)
+        share = len(self._told) / len(self._frames), 1.0 / len(self._frames)
+        return extraction.scene, settings, self._light(frame, share)
+
+    def _extracted(self, frame: int) -> Extraction:
+        scene = scene_of(self._scene_uid)
+        view_layer = view_layer_of(scene, self._view_layer)
+        scene.frame_set(frame)
+        objects = self._objects()
+        with bpy.context.temp_override(scene=scene, view_layer=view_layer):
+            extraction = extract(bpy.context, objects, self._settings.output)
+        check_storable(extraction, attributes_to_be(self._settings, extraction.scene))
+        return extraction
 
     def _objects(self) -> list[bpy.types.Object]:
         by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
@@ -167,35 +204,82 @@ class FrameRange:
         BakeError
             When it cannot be kept.
         """
-        frame = self._frames[self._next]
-        extraction, read = self._frame
-        traced = not result.report.get("relit", False)
-        if traced and self._next and self._files is None and self._settings.output == "REFINED":
-            raise FrameError(
-                f"Frame {frame}: something moved since the frame before, so that the refined meshes of the two differ; "
-                "choose Original Mesh as the output, or a file for each frame"
-            )
-        self._kept = result.kept
+        extraction, read = self._read
+        if self._to_look_at:
+            frame = self._to_look_at.pop(0)
+            with named(frame):
+                self._survey.look(frame, extraction.scene)
+            if not self._to_look_at:
+                self._to_light = self._survey.order()
+            return
+        frame = self._to_light.pop(0)
+        dark = result.report.get("dark", False)
+        traced = not dark and not result.report.get("relit", False)
+        if dark and not any(not told["dark"] for told in self._told.values()):
+            self._put_aside(frame)
+            return
+        if traced:
+            self._traced = TracedFrame(result.kept, result.meshes)
+            # What is dark was left until there is light: a range of nothing else is a mistake.
+            self._to_light, self._dark = [*self._dark, *self._to_light], []
         lit = LitFrame(frame, extraction, result, read)
-        self._told.append(
-            {
-                "frame": frame,
-                "traced": traced,
-                "rays": result.report.get("rays", 0),
-                "seconds": round(read + result.report.get("seconds", {}).get("total", 0.0), 4),
-            }
-        )
+        self._told[frame] = {
+            "frame": frame,
+            "traced": traced,
+            "dark": dark,
+            "rays": result.report.get("rays", 0),
+            "seconds": round(read + result.report.get("seconds", {}).get("total", 0.0), 4),
+        }
         if self._files is None:
             self._keep_colours(lit)
         else:
             self._write(lit)
         if frame == self._shown_frame:
             self._shown = lit
-        self._next += 1
+
+    def _light(self, frame: int, share: tuple[float, float]) -> Bake:
+        """Return what lights a frame: relit if only colours changed since the one that was traced, else traced.
+
+        Parameters
+        ----------
+        frame : int
+        share : (float, float)
+            How much of the range is done before, and how much this is of it.
+        """
+        before, one_tracing, written = self._traced, self._one_tracing, self._written
+
+        def light(scene: Scene, settings: BakeSettings, progress: ProgressCallback) -> BakeResult:
+            def told(message: Progress) -> None:
+                done, part = share
+                progress(Progress(f"Frame {frame}: {message.stage}", done + part * message.share, message.detail))
+
+            with named(frame, written):
+                if before is not None and isinstance(before.kept, KeptTransport):
+                    try:
+                        return replace(relight(before.kept, scene, told), kept=before.kept)
+                    except ChangedSceneError:
+                        pass
+                    except NoLightError:
+                        return replace(darkness(scene, settings, before.meshes), kept=before.kept)
+                if before is not None and one_tracing:
+                    raise FrameError(_why_not_relit(before.kept))
+                try:
+                    return trace(scene, settings, told)
+                except NoLightError:
+                    return darkness(scene, settings)
+
+        return light
+
+    def _put_aside(self, frame: int) -> None:
+        self._dark.append(frame)
+        if not self._to_light:
+            first, last = self._frames[0], self._frames[-1]
+            which = f"Frame {first}" if first == last else f"Frames {first} to {last}"
+            raise FrameError(f"{which}: {NO_LIGHT}")
 
     def _keep_colours(self, lit: LitFrame) -> None:
         """Keep the colours alone: whole results of many frames would take gigabytes."""
-        with named(lit.frame):
+        with named(lit.frame, self._written):
             check_unchanged(lit.extraction)
         by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
         attributes = self._attributes_of_sets(lit)
@@ -217,20 +301,23 @@ class FrameRange:
         return attributes_to_be(replace(self._settings, data_type="FLOAT"), lit.extraction.scene)
 
     def _write(self, lit: LitFrame) -> None:
-        self._store(lit)
         path = self._files[lit.frame]
-        with replaced(path) as temporary:
-            try:
-                bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
-            except RuntimeError as error:
-                raise FrameError(f"{path} could not be written: {error}") from error
-            if not is_whole_blend(temporary):
-                raise FrameError(f"{path} could not be written to its end; look whether the disk is full")
+        with named(lit.frame, self._written):
+            self._store(lit)
+            with replaced(path) as temporary:
+                try:
+                    bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
+                except RuntimeError as error:
+                    raise FrameError(f"{path} could not be written: {error}") from error
+                if not is_whole_blend(temporary):
+                    raise FrameError(f"{path} could not be written to its end; look whether the disk is full")
+        self._written += 1
 
     def finish(self) -> dict[str, Any]:
         """Store what was taken, and return the report: that of the frame which is shown, and a line for each."""
         lit = self._shown
         scene_of(self._scene_uid).frame_set(lit.frame)
+        self._sets = {uid: with_missing(sets) for uid, sets in self._sets.items()}
         # With one file a frame, the last of them is what the scene shows until here.
         return self._store(lit)
 
@@ -247,9 +334,17 @@ class FrameRange:
         remember(scene, lit.extraction, self._settings, replace(lit.result, kept=kept), objects)
         stored = time.perf_counter() - began
         report = shown_report(lit.extraction, lit.result, objects, cautions, exposure, lit.read, stored)
-        report["frames"] = self._told
+        report["warnings"] += self._warnings()
+        report["frames"] = [self._told[frame] for frame in sorted(self._told)]
         scene.radiosity.report = json.dumps(report)
         return report
+
+    def _warnings(self) -> list[str]:
+        dark = [str(frame) for frame in sorted(self._told) if self._told[frame]["dark"]]
+        others = [f"{len(dark) - _NAMED:,} more"] if len(dark) > _NAMED else []
+        if not dark:
+            return []
+        return [f"Nothing emits light at {_and('frame', [*dark[:_NAMED], *others])}; the light is black there"]
 
     def leave(self) -> None:
         """Go back to the frame where the scene was, unless it was deleted."""
@@ -263,12 +358,24 @@ class FrameRange:
 
 
 @contextmanager
-def named(frame: int) -> Iterator[None]:
-    """Have a named error say at which frame it happened."""
+def named(frame: int, written: int = 0) -> Iterator[None]:
+    """Have a named error say at which frame it happened, and of how many frames before files were written."""
     try:
         yield
     except BakeError as error:
-        raise FrameError(f"Frame {frame}: {error}") from error
+        raise FrameError(f"Frame {frame}: {error}{files_before(written)}") from error
+
+
+def files_before(count: int) -> str:
+    """Return what to add to a sentence on the end of a range, of which so many files were written."""
+    return f"; {counted(count, 'file')} of frames before {'was' if count == 1 else 'were'} written" if count else ""
+
+
+def _and(noun: str, names: list[str]) -> str:
+    """Return "frame 1" or "frames 1, 2 and 3"."""
+    if len(names) == 1:
+        return f"{noun} {names[0]}"
+    return f"{noun}s {', '.join(names[:-1])} and {names[-1]}"
 
 
 def bake_frames(
@@ -291,33 +398,46 @@ def bake_frames(
     BakeError
         With a sentence for the user. Without `files` nothing was changed; with them, the frames before were written.
     Cancelled
-        When `progress` raised it, likewise.
+        When `progress` raised it, or by Ctrl+C, likewise.
     """
-    return run_to_end(FrameRange(context, objects, settings, frames, files), progress)
+    task = FrameRange(context, objects, settings, frames, files)
+    try:
+        return run_to_end(task, progress)
+    except KeyboardInterrupt:
+        raise Cancelled(task.cancelled) from None
 
 
-def _light(kept: KeptTransport | NotKept | None, frame: int, number: int, count: int) -> Bake:
-    """Return what lights a frame, the `number`-th of `count`: relit if only colours changed, else traced."""
+def _looking(frame: int) -> Bake:
+    """Return what tells that a frame is looked at, and lights nothing."""
 
-    def light(scene: Scene, settings: BakeSettings, progress: ProgressCallback) -> BakeResult:
-        def told(message: Progress) -> None:
-            share = (number + message.share) / count
-            progress(Progress(f"Frame {frame}: {message.stage}", share, message.detail))
+    def look(_scene: Scene, _settings: BakeSettings, progress: ProgressCallback) -> BakeResult:
+        progress(Progress(f"Frame {frame}: Looking for what moves", 0.0))
+        return BakeResult((), {})
 
-        with named(frame):
-            if isinstance(kept, KeptTransport):
-                try:
-                    return replace(relight(kept, scene, told), kept=kept)
-                except ChangedSceneError:
-                    pass
-            return trace(scene, settings, told)
+    return look
 
-    return light
+
+def _why_not_relit(kept: KeptTransport | NotKept | None) -> str:
+    if isinstance(kept, NotKept):
+        return kept.why
+    return (
+        "its light cannot be told from what was traced for the other frames; "
+        "choose Original Mesh as the output, or a file for each frame"
+    )
 
 
 def files_of(path: Path, frames: range) -> list[Path]:
     """Return the file of each frame: `room_0012.blend` for `room.blend`."""
     return [path.with_name(f"{path.stem}_{frame:04d}{path.suffix}") for frame in frames]
+
+
+def with_missing(sets: Sets) -> Sets:
+    """Return the sets with black for what a frame has not and others have: light groups and backs that were dark."""
+    shapes = {name: part for values in sets.values() for name, part in values.items()}
+    return {
+        frame: {name: values.get(name, np.zeros_like(part)) for name, part in shapes.items()}
+        for frame, values in sorted(sets.items())
+    }
 
 
 def _single(values: Mapping[str, Floats | None]) -> dict[str, np.ndarray]:

@@ -33,7 +33,10 @@ Blender reads the file first, then this command bakes it and writes the result t
 
 Settings that are not given are those saved in the file (panel "Radiosity" in the 3D viewport's sidebar).
 """
-_EPILOG = "Exit code 0: both files were written. Exit code 1: nothing was written, and a sentence on stderr says why."
+_EPILOG = """\
+Exit code 0: all files were written. Exit code 1: none was, except those of frames before the one that failed, if each
+has a file of its own; a sentence on stderr says what happened.
+"""
 _LINE_EVERY_SECONDS = 1.0
 
 _handles = []

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from radiosity_bake.core.errors import UnsolvableError
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.operators.animation import RADIOSITY_OT_bake_frames, bake_frames
 from radiosity_bake.operators.command import main
@@ -21,6 +22,7 @@ from tests.blender.making import (
     bake_selected,
     colours_of,
     diffuse_material,
+    position_bake,
     report,
     select_also,
 )
@@ -118,26 +120,162 @@ def test_refined_meshes_carry_all_frames_while_nothing_moves(room):
     assert not np.allclose(colours_of(mesh, "Radiosity.0001"), colours_of(mesh, "Radiosity.0003"))
 
 
-def test_refined_meshes_that_differ_from_frame_to_frame_are_refused_and_nothing_changes(room):
+def test_refined_meshes_that_differ_from_frame_to_frame_are_refused_before_a_ray_is_traced(room, quick_bake):
     move_the_box(room[1])
     bpy.context.scene.radiosity.output = "REFINED"
     before = file_state()
-    with pytest.raises(RuntimeError, match="Frame 3: something moved since the frame before"):
+    with pytest.raises(
+        RuntimeError, match=r'Frame 3: "Box" moved or changed its shape since frame 1; .* Original Mesh'
+    ):
         bake_range()
+    assert not quick_bake
     assert not differences(before, file_state())
     assert bpy.context.scene.frame_current == 2
 
 
-def test_an_error_names_its_frame_and_changes_nothing(room):
-    light = bpy.data.lights["Lamp"]
-    for frame, energy in ((1, 100.0), (2, 100.0), (3, 0.0)):
+def test_what_is_hidden_at_a_frame_is_refused_for_refined_meshes_before_a_ray_is_traced(room, quick_bake):
+    for frame, hidden in ((1, False), (3, True)):
+        room[1].hide_render = hidden
+        room[1].keyframe_insert("hide_render", frame=frame)
+    bpy.context.scene.radiosity.output = "REFINED"
+    with pytest.raises(RuntimeError, match="Frame 3: objects or lamps were added, removed or hidden since frame 1"):
+        bpy.ops.radiosity.bake_frames()
+    assert not quick_bake
+
+
+def switched(name, *energies):
+    """Have a lamp of these powers at the frames 1, 2, 3 beside the room's."""
+    light = bpy.data.lights.get(name) or bpy.data.lights.new(name, "POINT")
+    if name not in bpy.data.objects:
+        add_object(name, light).location = (-1.0, 0.5, 2.0)
+    for frame, energy in enumerate(energies, 1):
         light.energy = energy
         light.keyframe_insert("energy", frame=frame)
     bpy.context.scene.frame_set(2)
+
+
+@pytest.mark.parametrize("output", ["ORIGINAL", "REFINED"])
+@pytest.mark.parametrize("dark", [(1,), (2,), (3,), (1, 2)])
+def test_a_frame_without_light_is_black_and_the_others_are_as_ever(room, output, dark):
+    floor, _ = room
+    bpy.context.scene.radiosity.output = output
+    switched("Lamp", *(0.0 if frame in dark else 100.0 for frame in (1, 2, 3)))
+    assert sum(bake_range()) == 1
+    told = report()
+    assert [frame["frame"] for frame in told["frames"] if frame["dark"]] == list(dark)
+    assert [warning for warning in told["warnings"] if "Nothing emits light at frame" in warning]
+    mesh = floor.data if output == "ORIGINAL" else bpy.data.objects["Floor Radiosity"].data
+    for frame in (1, 2, 3):
+        values = colours_of(mesh, f"Radiosity.{frame:04d}")
+        assert values[:, :3].any() == (frame not in dark)
+    np.testing.assert_array_equal(colours_of(mesh), colours_of(mesh, "Radiosity.0002"))
+
+
+def test_a_dark_frame_and_one_with_a_dark_light_group_have_all_attributes_of_the_others(room):
+    bpy.context.view_layer.lightgroups.add(name="Key")
+    switched("Other", 0.0, 0.0, 80.0)
+    bpy.data.objects["Other"].lightgroup = "Key"
+    settings = bpy.context.scene.radiosity
+    settings.light_groups, settings.data_type = True, "BYTE"
+    switched("Lamp", 0.0, 100.0, 100.0)
+    bake_range()
+    names = [attribute.name.rpartition(".") for attribute in room[0].data.color_attributes]
+    of_frames = [{name for name, _, frame in names if frame == number} for number in ("0001", "0002", "0003")]
+    assert of_frames[0] == of_frames[1] == of_frames[2] and {"Radiosity Key", "Radiosity Ungrouped"} <= of_frames[0]
+
+
+def test_each_dark_frame_has_a_file_once_another_has_light(room, tmp_path, monkeypatch):
+    switched("Lamp", 0.0, 100.0, 0.0)
+    bpy.context.scene.radiosity.output = "REFINED"
+    saved(tmp_path, monkeypatch)
+    assert sum(bake_range("FILES")) == 1
+    for frame in (1, 2, 3):
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / f"room_{frame:04d}.blend"))
+        values = colours_of(bpy.data.objects["Floor Radiosity"].data)
+        assert values[:, :3].any() == (frame == 2)
+
+
+@pytest.mark.parametrize("output", ["ORIGINAL", "REFINED"])
+@pytest.mark.parametrize("frame_output", ["ATTRIBUTES", "FILES"])
+def test_a_range_of_darkness_is_a_mistake_and_nothing_is_written(room, tmp_path, monkeypatch, output, frame_output):
+    switched("Lamp", 0.0, 0.0, 0.0)
+    bpy.context.scene.radiosity.output = output
+    saved(tmp_path, monkeypatch)
+    with pytest.raises(RuntimeError, match="Frames 1 to 3: Nothing in the scene emits light"):
+        bake_range(frame_output)
+    assert [path.name for path in tmp_path.iterdir()] == ["room.blend"]
+    assert not room[0].data.color_attributes
+
+
+def test_refined_meshes_are_traced_at_the_frame_that_has_all_lights_on(room):
+    switched("Lamp", 100.0, 100.0, 0.0)
+    switched("Other", 0.0, 80.0, 80.0)
+    bpy.context.scene.radiosity.output = "REFINED"
+    assert bake_range() == [False, True, False]
+    mesh = bpy.data.objects["Floor Radiosity"].data
+    assert all(colours_of(mesh, f"Radiosity.{frame:04d}")[:, :3].any() for frame in (1, 2, 3))
+
+
+def test_refined_meshes_of_frames_with_other_lights_on_are_refused_before_a_ray_is_traced(room, quick_bake):
+    switched("Lamp", 100.0, 100.0, 0.0)
+    switched("Other", 0.0, 0.0, 80.0)
+    bpy.context.scene.radiosity.output = "REFINED"
+    with pytest.raises(RuntimeError, match='"Other" shines at frame 3 and not at frame 1'):
+        bpy.ops.radiosity.bake_frames()
+    assert not quick_bake
+
+
+def test_refined_meshes_are_refused_where_the_first_frame_could_not_be_kept(room):
+    bpy.context.scene.radiosity.output = "REFINED"
+    bpy.context.scene.radiosity.memory_limit = 64
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("radiosity_bake.core.relight.size_of", lambda _: 2**40)
+        with pytest.raises(RuntimeError, match=r"Frame 2: .* larger than the memory limit of 64 MiB"):
+            bake_range()
+
+
+def failing_at_the_third(bakes=2):
+    """Return a bake without rays that fails when it was done so often."""
+    done = []
+
+    def bake(scene, settings, progress):
+        if len(done) == bakes:
+            raise UnsolvableError("Light is trapped")
+        done.append(scene)
+        return position_bake(scene, settings, progress)
+
+    return bake
+
+
+def test_an_error_names_its_frame_and_changes_nothing(room, run_instead):
+    run_instead(failing_at_the_third())
     before = file_state()
-    with pytest.raises(RuntimeError, match="Frame 3: "):
+    with pytest.raises(RuntimeError, match=r"Frame 3: Light is trapped$"):
         bake_range()
     assert not differences(before, file_state())
+
+
+def test_an_error_tells_of_the_files_that_were_written_before(room, run_instead, tmp_path, monkeypatch, capsys):
+    run_instead(failing_at_the_third())
+    saved(tmp_path, monkeypatch)
+    assert main(["--frames", "1:3", "--frames-to", "FILES", "--output", "baked.blend"]) == 1
+    assert "Frame 3: Light is trapped; 2 files of frames before were written" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["baked_0001.blend", "baked_0002.blend", "room.blend"]
+
+
+def test_ctrl_c_tells_of_the_files_that_were_written_before(room, run_instead, tmp_path, monkeypatch, capsys):
+    done = []
+
+    def interrupted(*arguments):
+        if done:
+            raise KeyboardInterrupt
+        done.append(arguments)
+        return position_bake(*arguments)
+
+    run_instead(interrupted)
+    saved(tmp_path, monkeypatch)
+    assert main(["--frames", "1:3", "--frames-to", "FILES", "--output", "baked.blend"]) == 1
+    assert "cancelled; 1 file of frames before was written" in capsys.readouterr().err
 
 
 def test_a_shorter_range_and_an_ordinary_bake_leave_no_sets_of_an_earlier_one(room):
@@ -309,4 +447,4 @@ def test_an_error_from_the_window_is_told_with_its_frame(room):
     assert until_it_ends(operator, window) == {"CANCELLED"}
     assert_left(window)
     ((kind, sentence),) = operator.reports
-    assert kind == "ERROR" and sentence.startswith("Frame 1: ")
+    assert kind == "ERROR" and sentence.startswith("Frames 1 to 3: Nothing in the scene emits light")
