@@ -116,16 +116,29 @@ def find_crossings(surfaces: Surfaces, rays: RayScene, lit: NDArray[np.bool_], s
     found = Crossings(*(np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(Crossings)))
     lines, thickness = _merged(found, np.concatenate(thick), surfaces)
     size = largest_edges(surfaces.points, surfaces.triangles[lines.triangle])
-    shortest = np.maximum(np.minimum(smallest, LEAST_LINE * size), LEAST_SLENDERNESS * thickness)
-    length = lines.high - lines.low
-    kept = np.flatnonzero((thickness < LARGEST_THICKNESS * smallest) & (length > shortest))
-    most = max(FEWEST_LINES, int(LINES_OF_PATCHES * float(surfaces.areas.sum()) / smallest**2))
+    shortest, length = np.minimum(smallest, LEAST_LINE * size), lines.high - lines.low
     corners = surfaces.points[surfaces.triangles[lines.triangle]]
-    beside = np.einsum("kx,kjx->kj", lines.across, corners - corners[:, :1]) - lines.offset[:, None]
+    way = corners - corners[:, :1]
+    beside = np.einsum("kx,kjx->kj", lines.across, way) - lines.offset[:, None]
     # What runs along an edge cuts nothing.
-    within = (np.minimum(beside.max(axis=1), -beside.min(axis=1)) > SAME_LINE * size)[kept]
+    within = np.minimum(beside.max(axis=1), -beside.min(axis=1)) > SAME_LINE * size
+    first, last = _sections(beside, np.einsum("kx,kjx->kj", lines.along, way))
+    divides = within & (lines.low < first + SAME_LINE * size) & (lines.high > last - SAME_LINE * size)
+    thin = (thickness < LARGEST_THICKNESS * smallest) & (length > LEAST_SLENDERNESS * thickness)
+    kept = np.flatnonzero((thin | divides) & (length > shortest))
+    within = within[kept]
+    most = max(FEWEST_LINES, int(LINES_OF_PATCHES * float(surfaces.areas.sum()) / smallest**2))
     longest = np.argsort(-length[kept[within]], kind="stable")[:most]
     return lines.taken(np.sort(np.concatenate([kept[~within], kept[within][longest]])))
+
+
+def _sections(beside: Floats, along: Floats) -> tuple[Floats, Floats]:
+    """Where lines enter and leave triangles, (k,), from the corners' distances (k, 3) beside and along them."""
+    other_beside, other_along = np.roll(beside, -1, axis=1), np.roll(along, -1, axis=1)
+    crossed = (beside > 0.0) != (other_beside > 0.0)
+    share = beside / np.where(crossed, beside - other_beside, 1.0)
+    place = along + share * (other_along - along)
+    return np.where(crossed, place, np.inf).min(axis=1), np.where(crossed, place, -np.inf).max(axis=1)
 
 
 def _thickness(

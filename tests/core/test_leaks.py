@@ -45,7 +45,7 @@ def test_a_wall_between_a_bright_room_and_a_dark_one_lets_nothing_through(scale,
 
 
 @GAPS
-@pytest.mark.parametrize("thickness", [0.0, 0.002, 0.06])
+@pytest.mark.parametrize("thickness", [0.0, 0.002, 0.06, 0.3])
 @pytest.mark.parametrize("place", [1.17])
 def test_nothing_gets_through_a_wall_that_stands_where_no_edge_of_the_room_is(place, thickness, gap):
     lamp = exact.rectangle("lamp", (0.15, 0.3, 0.9), (0, 0.4, 0), (0.3, 0, 0), emission=5.0)

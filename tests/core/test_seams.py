@@ -64,13 +64,14 @@ def test_a_wall_that_is_dark_behind_cuts_a_floor_that_goes_on_there():
     assert len(floor_pieces(*cut_patches(FLOOR, wall((0.3, -1.0), (0.3, 2.0)), two_sided=False))) > 2
 
 
-def test_thin_solids_cut_a_floor_and_thick_ones_do_not():
-    def pieces(thickness):
-        solid = block("solid", (0.3, -1.0, 0.0), (0.3 + thickness, 2.0, 0.5))
+def test_solids_cut_a_floor_where_they_are_thin_or_divide_it():
+    def pieces(thickness, first, last):
+        solid = block("solid", (0.3, first, 0.0), (0.3 + thickness, last, 0.5))
         return len(floor_pieces(*cut_patches(FLOOR, solid, two_sided=False)))
 
-    assert pieces(0.1) > 2
-    assert pieces(0.5) == 2
+    assert pieces(0.1, 0.1, 0.9) > 2
+    assert pieces(0.5, 0.1, 0.9) == 2
+    assert pieces(0.5, -1.0, 2.0) > 2
 
 
 def test_the_walls_of_a_room_that_meet_along_their_edges_are_not_cut():
