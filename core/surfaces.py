@@ -135,7 +135,7 @@ class Surfaces:
         chance its back or the wall, as if the cupboard were open to the room. Where rooms of sheets lie beside each
         other, it met the wall of the one or of the other.
         """
-        solid = (self.closed & (signed_volumes(self) > 0.0))[self.shell_of_triangle]
+        solid = self._solid[self.shell_of_triangle]
         apart = self._back_to_back()
         moved = self.points - self.hair * self._way(np.flatnonzero(solid))
         result: Floats = moved + self._hair_of(self.triangles[apart]) * self._way(np.flatnonzero(apart))
@@ -167,12 +167,19 @@ class Surfaces:
     @cached_property
     def _of_solids(self) -> Ints:
         """Triangles of what has an inside, (k, 3)."""
-        solid = self.closed & (signed_volumes(self) > 0.0)
-        return self.triangles[solid[self.shell_of_triangle]]
+        return self.triangles[self._solid[self.shell_of_triangle]]
+
+    @cached_property
+    def _solid(self) -> NDArray[np.bool_]:
+        """Whether each shell has an inside, which its normals look away from, (shells,)."""
+        return self.closed & (signed_volumes(self) > 0.0)
 
     def _back_to_back(self) -> NDArray[np.bool_]:
-        """Triangles of sheets in one plane with others, of another sheet, that look the other way, (t,)."""
-        sheets = np.flatnonzero(~self.closed[self.shell_of_triangle])
+        """Triangles of sheets in one plane with others, of another sheet, that look the other way, (t,).
+
+        Rooms that are closed are sheets as others are, around the space that their normals look into.
+        """
+        sheets = np.flatnonzero(~self._solid[self.shell_of_triangle])
         corners, shell = self.points[self.triangles[sheets]], self.shell_of_triangle[sheets]
         result = np.zeros(len(self.triangles), dtype=bool)
         result[sheets] = share_planes(self.normals[sheets], corners, shell, self.extent)[1]

@@ -345,8 +345,8 @@ SWEEPS = {
             "A bright room beside a dark one",
             "distance between the walls, in half widths of a room",
             "The walls between the rooms are single sheets. No light may pass; a ray that begins beyond the other "
-            "sheet would bring it. At 0 both lie in one plane, and which of them a ray meets is chance: ours then "
-            "takes the dark room for lit on its outside, shows it turned over and says so.",
+            "sheet would bring it. At 0 both lie in one plane, and it would be chance which of them a ray meets: ours "
+            "holds such walls apart for rays, by less than these begin off them.",
             (*powers(-1, -6, -1), 0.0),
             wall,
             1e-3,

@@ -45,7 +45,8 @@ def test_the_light_on_the_longest_strip_is_right_in_few_vertices():
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("wall", 1e-2), ("wall", 1e-6), ("through", 1.0), ("through", 1e-2), ("through", 1e-5)]
+    ("name", "value"),
+    [("wall", 1e-2), ("wall", 1e-6), ("wall", 0.0), ("through", 1.0), ("through", 1e-2), ("through", 1e-5)],
 )
 def test_no_light_gets_into_a_dark_room(name, value):
     sweep = SWEEPS[name]
