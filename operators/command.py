@@ -17,6 +17,7 @@ from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUT
 from .animation import FRAME_OUTPUTS, bake_frames, files_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_spared, check_writable, files_in_use, is_whole_blend, replaced
+from .naming import named
 from .participants import is_stamp, rendered_objects
 from .record import source_of
 from .settings import bake_settings, keep_settings
@@ -120,6 +121,7 @@ def _parser() -> argparse.ArgumentParser:
     files.add_argument("--report", metavar="FILE", help="a JSON file for counts, times, errors and warnings")
     files.add_argument("--overwrite", action="store_true", help="allow --output to be the file that was read")
     what = parser.add_argument_group("what is baked")
+    what.add_argument("--scene", metavar="NAME", help="this scene; else the one that was shown when the file was saved")
     what.add_argument("--object", metavar="NAME", action="append", help="bake this mesh only; may be given repeatedly")
     what.add_argument(
         "--frames", metavar="A:B", help="bake every frame from A to B; all in one file, or a file each (--frames-to)"
@@ -180,6 +182,29 @@ def _run(options: argparse.Namespace) -> None:
     if problem is not None:
         raise CommandError(problem)
     context = bpy.context
+    with ExitStack() as shown:
+        _show_scene(options.scene, shown)
+        _bake(options, context)
+
+
+def _show_scene(name: str | None, shown: ExitStack) -> None:
+    """Have the context be that of a scene, which the output shows then; of the one that it is, for None."""
+    if name is None:
+        return
+    scene = bpy.data.scenes.get((name, None))
+    if scene is None:
+        raise CommandError(f'There is no scene "{name}" that could be baked; the file has {named(_local_scenes())}')
+    if bpy.context.window is not None:
+        bpy.context.window.scene = scene
+    else:
+        shown.enter_context(bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]))
+
+
+def _local_scenes() -> list[str]:
+    return [scene.name for scene in bpy.data.scenes if scene.library is None]
+
+
+def _bake(options: argparse.Namespace, context: bpy.types.Context) -> None:
     if context.mode != "OBJECT":
         # A file remembers the mode that it was saved in, and there is nobody here to leave it.
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -205,8 +230,7 @@ def _run_frames(options: argparse.Namespace, objects: list[bpy.types.Object], se
     keep_settings(context.scene.radiosity, settings)
     report = bake_frames(context, objects, settings, frames, outputs if to_files else None, _ProgressLines())
     _write(report, None if to_files else outputs[0], report_path)
-    for warning in report["warnings"]:
-        print(f"Warning: {warning}")
+    _warn(report)
     others = f" and {len(outputs) - 1:,} more" if len(outputs) > 1 else ""
     print(f"{summary_of(report)}. Wrote {outputs[0]}{others}", flush=True)
 
@@ -330,9 +354,24 @@ class _ProgressLines:
         print(f"{message.share:4.0%}  {message.stage}{detail}", flush=True)
 
 
-def _summarise(report: dict, output: Path) -> None:
+def _warn(report: dict) -> None:
     for warning in report["warnings"]:
         print(f"Warning: {warning}")
+    others = [scene.name for scene in bpy.data.scenes if scene != bpy.context.scene and _could_be_baked(scene)]
+    if others:
+        print(
+            f'Only the scene "{bpy.context.scene.name}" was baked; the file also has {named(others)}: '
+            "--scene NAME bakes another"
+        )
+
+
+def _could_be_baked(scene: bpy.types.Scene) -> bool:
+    layers = scene.view_layers if scene.library is None else ()
+    return any(shows_surfaces(obj) for layer in layers for obj in rendered_objects(layer))
+
+
+def _summarise(report: dict, output: Path) -> None:
+    _warn(report)
     print(
         f"Baked {counted(len(report['objects']), 'object')} in {report['seconds']['total']:.1f} s: "
         f"{report.get('patches', 0):,} patches, {report.get('vertices', 0):,} vertices, "

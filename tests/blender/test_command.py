@@ -164,6 +164,46 @@ def test_an_image_is_not_written_over_by_the_report(room, capsys):
     assert "would replace" in fails(["--output", "baked.blend", "--report", "bricks.png"], capsys)
 
 
+@pytest.fixture
+def two_scenes(room):
+    """Save another scene in room.blend, with a cube of its own and the settings of a high quality."""
+    second = bpy.data.scenes.new("Second")
+    cube = bpy.data.objects.new("Other Cube", bpy.data.objects["Cube"].data)
+    second.collection.objects.link(cube)
+    second.radiosity.quality = "HIGH"
+    bpy.data.scenes.new("Notes")
+    bpy.ops.wm.save_mainfile()
+    return room
+
+
+def test_the_scene_that_is_asked_for_is_baked_and_shown(two_scenes, quick_bake, capsys):
+    assert main(["--output", "baked.blend", "--scene", "Second"], str(two_scenes)) == 0
+    ((_, settings),) = quick_bake
+    assert settings.quality == "HIGH"
+    opened("baked.blend")
+    assert bpy.context.scene.name == "Second"
+    assert "Other Cube Radiosity" in bpy.context.scene.objects
+    assert "Cube Radiosity" not in bpy.data.objects
+    assert 'Only the scene "Second" was baked; the file also has "Scene": --scene NAME' in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_scenes_that_were_not_baked_are_named_unless_there_is_nothing_to_bake_in_them(two_scenes, capsys):
+    assert main(["--output", "baked.blend"], str(two_scenes)) == 0
+    assert 'the file also has "Second": --scene NAME bakes another' in capsys.readouterr().out
+    assert main(["--output", "baked.blend", "--frames", "1:1"], str(two_scenes)) == 0
+    assert 'the file also has "Second": --scene NAME bakes another' in capsys.readouterr().out
+    bpy.data.scenes.remove(bpy.data.scenes["Second"])
+    assert main(["--output", "baked.blend"]) == 0
+    assert "--scene" not in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_a_scene_that_is_not_there_is_a_sentence(two_scenes, capsys):
+    sentence = fails(["--output", "baked.blend", "--scene", "Third"], capsys)
+    assert 'There is no scene "Third"' in sentence and '"Notes", "Scene", "Second"' in sentence
+
+
 def fails(arguments, capsys):
     """Return the sentence of a run that must fail before it bakes, and leaves no file behind."""
     before = names()
