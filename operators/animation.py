@@ -24,7 +24,7 @@ from ..core.relight import ChangedSceneError, KeptTransport, NotKept, relight
 from ..core.result import BakedMesh, BakeResult
 from ..core.scene import Floats, Scene
 from ..core.settings import BakeSettings
-from .attributes import Attributes, attributes_of, attributes_to_be
+from .attributes import attributes_of, attributes_to_be
 from .bake import counted, reason_not_to_bake, shown_report, trace
 from .doors import TwoDoors, run_to_end
 from .extraction import Extraction, extract
@@ -34,7 +34,7 @@ from .job import Bake
 from .journal import Journal
 from .record import source_of
 from .refined import values_of_corners
-from .sets import add_sets
+from .sets import add_sets, name_of_set
 from .settings import bake_settings
 from .store import ChangedMeanwhileError, check_storable, check_unchanged, scene_of, store, view_layer_of
 from .survey import Survey
@@ -186,7 +186,8 @@ class FrameRange:
         objects = self._objects()
         with bpy.context.temp_override(scene=scene, view_layer=view_layer):
             extraction = extract(bpy.context, objects, self._settings.output)
-        check_storable(extraction, attributes_to_be(self._settings, extraction.scene))
+        ending = max((name_of_set("", frame) for frame in self._frames), key=len) if self._files is None else ""
+        check_storable(extraction, attributes_to_be(self._settings, extraction.scene), ending)
         return extraction
 
     def _objects(self) -> list[bpy.types.Object]:
@@ -282,7 +283,8 @@ class FrameRange:
         with named(lit.frame, self._written):
             check_unchanged(lit.extraction)
         by_uid = {obj.session_uid: obj for obj in bpy.data.objects}
-        attributes = self._attributes_of_sets(lit)
+        # Of bytes the exposure is known when all frames are lit.
+        attributes = attributes_to_be(replace(self._settings, data_type="FLOAT"), lit.extraction.scene)
         for target, baked in baked_targets(lit.extraction.scene, lit.extraction.targets, lit.result, self._settings):
             if self._settings.output == "REFINED":
                 values = values_of_corners(target, baked, attributes)
@@ -295,10 +297,6 @@ class FrameRange:
                     f'Frame {lit.frame}: the mesh of "{target.name}" has other faces than in the frame before; '
                     "nothing was stored"
                 )
-
-    def _attributes_of_sets(self, lit: LitFrame) -> Attributes:
-        # Bytes of another exposure for each frame could not be compared.
-        return attributes_to_be(replace(self._settings, data_type="FLOAT"), lit.extraction.scene)
 
     def _write(self, lit: LitFrame) -> None:
         path = self._files[lit.frame]
@@ -325,10 +323,16 @@ class FrameRange:
         began = time.perf_counter()
         scene = scene_of(lit.extraction.scene_uid)
 
-        def beside(obj: bpy.types.Object, uid: int, journal: Journal) -> None:
-            add_sets(obj, self._sets.get(uid, {}), self._attributes_of_sets(lit), journal)
+        others = [
+            values for sets in self._sets.values() for frame, values in sets.items() if frame != self._shown_frame
+        ]
+        # Bytes of another exposure for each frame could not be compared.
+        attributes, exposure = attributes_of(self._settings, lit.extraction, lit.result, others)
 
-        attributes, exposure = attributes_of(self._settings, lit.extraction, lit.result)
+        def beside(obj: bpy.types.Object, uid: int, journal: Journal) -> None:
+            sets = {frame: attributes.as_stored(values) for frame, values in self._sets.get(uid, {}).items()}
+            add_sets(obj, sets, attributes, journal)
+
         objects, cautions = store(scene, lit.extraction, lit.result, attributes, beside)
         kept = lit.result.kept if self._settings.keep_transport else None
         remember(scene, lit.extraction, self._settings, replace(lit.result, kept=kept), objects)
@@ -342,9 +346,12 @@ class FrameRange:
     def _warnings(self) -> list[str]:
         dark = [str(frame) for frame in sorted(self._told) if self._told[frame]["dark"]]
         others = [f"{len(dark) - _NAMED:,} more"] if len(dark) > _NAMED else []
-        if not dark:
-            return []
-        return [f"Nothing emits light at {_and('frame', [*dark[:_NAMED], *others])}; the light is black there"]
+        warnings = []
+        if dark:
+            warnings.append(f"Nothing emits light at {_and('frame', [*dark[:_NAMED], *others])}; it is black there")
+        if self._files is not None and self._settings.data_type == "BYTE" and self._settings.byte_maximum == 0.0:
+            warnings.append("The bytes of each frame have an exposure of their own; set Byte Maximum to compare them")
+        return warnings
 
     def leave(self) -> None:
         """Go back to the frame where the scene was, unless it was deleted."""

@@ -3,7 +3,7 @@
 """Which colour attributes a bake writes, and how: their names, domain, type and exposure."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -64,6 +64,11 @@ class Attributes:
             values[self.name(quantity, back, group)] = None if found is None else self._stored(found, quantity)
         return values
 
+    def as_stored(self, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return light by attribute name, as `values` of an attribute of floats gives it, as it is to be stored."""
+        quantities = {self.name(*which): which[0] for which in self._which()}
+        return {name: self._stored(light, quantities[name]) for name, light in values.items()}
+
     def quantity_shown(self) -> str:
         """Return what is shown where the colours of materials are not."""
         return IRRADIANCE if self.settings.light == "IRRADIANCE" else RADIOSITY
@@ -92,17 +97,31 @@ def attributes_to_be(settings: BakeSettings, scene: Scene) -> Attributes:
 
 
 def attributes_of(
-    settings: BakeSettings, extraction: Extraction, result: BakeResult
+    settings: BakeSettings,
+    extraction: Extraction,
+    result: BakeResult,
+    beside: Iterable[Mapping[str, np.ndarray]] = (),
 ) -> tuple[Attributes, dict[str, Any] | None]:
-    """Return the attributes of a bake, and the exposure of its bytes for the report: None where there are none."""
+    """Return the attributes of a bake, and the exposure of its bytes for the report: None where there are none.
+
+    Parameters
+    ----------
+    settings : BakeSettings
+    extraction : Extraction
+    result : BakeResult
+    beside : iterable of mapping of str to (c, 3) float
+        Other light by attribute name, that is to have the same exposure.
+    """
     attributes = attributes_to_be(settings, extraction.scene)
     if settings.data_type == "FLOAT":
         return attributes, None
     maxima, exposure = {}, {}
+    beside = list(beside)
     meshes = [baked for _, baked in baked_targets(extraction.scene, extraction.targets, result, settings)]
     for quantity in (RADIOSITY, IRRADIANCE):
         names = (quantity.lower(), f"{quantity.lower()}_back")
         found = [getattr(mesh, name) for mesh in meshes for name in names]
+        found += [sets.get(attributes.name(quantity, back)) for sets in beside for back in (False, True)]
         values = [part.max(axis=-1) for part in found if part is not None]
         brightest = max((float(part.max(initial=0.0)) for part in values), default=0.0)
         maximum = settings.byte_maximum or brightest or 1.0

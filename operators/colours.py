@@ -18,7 +18,25 @@ class AttributeNameError(BakeError):
     """The name of an attribute is taken by something that cannot be moved aside."""
 
 
+LONGEST_NAME = 67
+"""Bytes of an attribute's name in Blender before 5.0."""
+
 TYPES = {"FLOAT": "FLOAT_COLOR", "BYTE": "BYTE_COLOR"}
+
+
+def check_lengths(attributes: Attributes, ending: str) -> None:
+    """Refuse names that are longer than Blender allows when `ending` is added to them.
+
+    Raises
+    ------
+    AttributeNameError
+    """
+    longest = max((name + ending for name in attributes.names()), key=lambda name: len(name.encode()))
+    if bpy.app.version < (5, 0, 0) and len(longest.encode()) > LONGEST_NAME:
+        raise AttributeNameError(
+            f'The name "{longest}" of an attribute would be longer than the {LONGEST_NAME} bytes that Blender allows; '
+            "shorten the prefix or the name of the light group"
+        )
 
 
 def write_colours(mesh: bpy.types.Mesh, values: Mapping[str, Floats | None], attributes: Attributes) -> None:

@@ -11,6 +11,7 @@ from ..core.result import BakeResult
 from . import display
 from .attributes import Attributes
 from .changes import clear_record
+from .colours import check_lengths
 from .extraction import Extraction
 from .in_place import check_names, keeps_names, store_in_place
 from .journal import Journal
@@ -82,14 +83,23 @@ def store(
     return baked_objects, warnings + displays.cautions
 
 
-def check_storable(extraction: Extraction, attributes: Attributes) -> None:
+def check_storable(extraction: Extraction, attributes: Attributes, ending: str = "") -> None:
     """Refuse what could not be stored in the end, before time is spent on it.
+
+    Parameters
+    ----------
+    extraction : Extraction
+    attributes : Attributes
+    ending : str
+        The longest that is added to their names.
 
     Raises
     ------
     AttributeNameError
-        When an object that shall be baked in place has a vertex group with the name of one of our attributes.
+        When a name is longer than Blender allows, or when an object that shall be baked in place has a vertex group
+        with the name of one of our attributes.
     """
+    check_lengths(attributes, ending)
     if attributes.settings.output != "ORIGINAL":
         return
     uids = {target.uid for target in extraction.targets}

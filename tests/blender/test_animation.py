@@ -184,6 +184,55 @@ def test_a_dark_frame_and_one_with_a_dark_light_group_have_all_attributes_of_the
     assert of_frames[0] == of_frames[1] == of_frames[2] and {"Radiosity Key", "Radiosity Ungrouped"} <= of_frames[0]
 
 
+@pytest.mark.parametrize("output", ["ORIGINAL", "REFINED"])
+@pytest.mark.parametrize("maximum", [0.0, 0.5])
+def test_bytes_of_all_frames_have_one_exposure(room, output, maximum):
+    switched("Lamp", 100.0, 50.0, 200.0)
+    settings = bpy.context.scene.radiosity
+    settings.output = output
+    bake_range()
+    name = "Floor" if output == "ORIGINAL" else "Floor Radiosity"
+    floats = {frame: colours_of(bpy.data.objects[name].data, f"Radiosity.{frame:04d}") for frame in (1, 2, 3)}
+    brightest = max(
+        colours_of(obj.data, "Radiosity.0003")[:, :3].max()
+        for obj in bpy.context.scene.objects
+        if obj.type == "MESH" and "Radiosity.0003" in obj.data.color_attributes
+    )
+    settings.data_type, settings.byte_maximum = "BYTE", maximum
+    bake_range()
+    mesh = bpy.data.objects[name].data
+    assert {attribute.data_type for attribute in mesh.color_attributes} == {"BYTE_COLOR"}
+    exposure = report()["exposure"]["Radiosity"]
+    assert exposure["maximum"] == pytest.approx(maximum or brightest, rel=1e-6)
+    assert (exposure["clipped"] > 0) == (maximum > 0.0)
+    for frame, values in floats.items():
+        # Half a step of 8 bits in sRGB is at most 0.0046 in linear light, where it is steepest.
+        expected = np.clip(values[:, :3] / exposure["maximum"], 0.0, 1.0)
+        np.testing.assert_allclose(colours_of(mesh, f"Radiosity.{frame:04d}")[:, :3], expected, atol=0.0046)
+    np.testing.assert_array_equal(colours_of(mesh), colours_of(mesh, "Radiosity.0002"))
+
+
+@pytest.mark.parametrize("maximum", [0.0, 2.0])
+def test_files_of_bytes_with_exposures_of_their_own_are_warned_of(room, tmp_path, monkeypatch, maximum):
+    settings = bpy.context.scene.radiosity
+    settings.data_type, settings.byte_maximum = "BYTE", maximum
+    saved(tmp_path, monkeypatch)
+    bake_range("FILES")
+    assert any("an exposure of their own" in warning for warning in report()["warnings"]) == (maximum == 0.0)
+
+
+@pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="names may be of any length there")
+def test_a_name_that_only_the_frame_makes_too_long_is_refused_before_a_ray_is_traced(room, quick_bake):
+    bpy.context.view_layer.lightgroups.add(name="k" * 50)
+    bpy.data.objects["Lamp"].lightgroup = "k" * 50
+    bpy.context.scene.radiosity.light_groups = True
+    assert bpy.ops.radiosity.bake() == {"FINISHED"}
+    quick_bake.clear()
+    with pytest.raises(RuntimeError, match=r"kkk Back\.0001.*shorten the prefix or the name of the light group"):
+        bake_range()
+    assert not quick_bake
+
+
 def test_each_dark_frame_has_a_file_once_another_has_light(room, tmp_path, monkeypatch):
     switched("Lamp", 0.0, 100.0, 0.0)
     bpy.context.scene.radiosity.output = "REFINED"
