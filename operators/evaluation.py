@@ -400,12 +400,17 @@ def _look_as(scene: bpy.types.Scene, shown: bpy.types.Scene) -> None:
     """Give a scratch scene what nodes may ask another for: its frame, its camera, and properties of the user's own."""
     scene.frame_current, scene.camera = shown.frame_current, shown.camera
     for owner, model in ((scene, shown), (scene.view_layers[0], bpy.context.view_layer)):
-        for name, value in model.items():
-            # Before Blender 5, those of add-ons and engines are among them.
-            if name not in model.bl_rna.properties:
-                owner[name] = value
+        _copy_own_properties(owner, model)
     for name in ("resolution_x", "resolution_y", "resolution_percentage", "pixel_aspect_x", "pixel_aspect_y"):
         setattr(scene.render, name, getattr(shown.render, name))
+
+
+def _copy_own_properties(owner: Any, model: Any) -> None:
+    """Copy the properties that the user gave something."""
+    for name, value in model.items():
+        # Before Blender 5, those of add-ons and engines are among them.
+        if name not in model.bl_rna.properties:
+            owner[name] = value
 
 
 def _copy_groups(tree: bpy.types.NodeTree) -> None:
@@ -454,6 +459,7 @@ def _object_like(obj: bpy.types.Object, mesh: bpy.types.Mesh, matrix: Floats) ->
     else:
         made = bpy.data.objects.new(_ATLAS, mesh)
         made.color, made.pass_index = obj.color, obj.pass_index
+        _copy_own_properties(made, obj)
     made.hide_render = made.hide_viewport = made.is_holdout = False
     made.matrix_world = Matrix(matrix)
     return made

@@ -583,3 +583,22 @@ def test_a_small_picture_in_srgb_is_magnified_as_in_cycles(extension):
     image.pixels.foreach_set(halves.reshape(-1))
     # From pixel to pixel in linear light, the middle between them would be 0.4 in place of 0.2.
     assert_as_in_cycles(painted(lambda tree: image_node(tree, image, extension=extension)), step=SCALED * STEP)
+
+
+def test_a_property_of_a_text_reaches_what_blender_evaluates():
+    def asked(tree):
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "OBJECT", "tint"
+        return node.outputs["Color"]
+
+    curve = bpy.data.curves.new("Text", "FONT")
+    curve.body = "O"
+    curve.materials.append(painted(asked))
+    text = bpy.data.objects.new("Text", curve)
+    text["tint"] = [0.7, 0.2, 0.1]
+    bpy.context.scene.collection.objects.link(text)
+    bpy.context.view_layer.update()
+    (mesh,) = extract(bpy.context, [text]).scene.meshes
+    assert with_means(mesh.reflectance, mesh.reflectance_texture) == pytest.approx(
+        np.broadcast_to((0.7, 0.2, 0.1), mesh.reflectance.shape), abs=1e-4
+    )
