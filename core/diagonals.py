@@ -32,6 +32,8 @@ STEPS_OF_GAIN = 16.0
 MOST_ROUNDS = 32
 """Rounds of turning; in each, no two pairs of faces touch."""
 
+TRIANGLES_AT_ONCE = 2**13
+"""Whose working arrays stay in a core's second cache."""
 
 LEAST_BEND = 4.0
 """Times the tolerance, relative to the mean: a diagonal across which light bends less is left as it is. What is
@@ -48,20 +50,25 @@ def turned_diagonals(surfaces: Surfaces, shown: Lit, tolerance: float) -> Ints:
     tolerance : float
         Error of interpolation that may be left, relative to the mean.
     """
-    count = len(shown.faces.triangle)
-    of_corner = shown.places.of_corner[:count]
-    values, weight = shown.corner_irradiance(), shown.weights(surfaces)
-    sides = [values[:count]]
-    if len(values) > count:
-        behind = np.zeros((count, 3, 3))
-        behind[shown.face[count:]] = values[count:]
-        sides.append(behind)
+    light, mean = _light_of_faces(surfaces, shown)
+    of_corner = shown.places.of_corner[: len(light)]
     aside = (shown.gathered.hidden | shown.gathered.touching)[of_corner].any(axis=1)
-    corners = shown.faces.points[shown.faces.corners]
     # What stays as it is is of a group of its own.
-    group = np.where(aside, -1 - np.arange(count), shown.faces.triangle)
+    group = np.where(aside, -1 - np.arange(len(light)), shown.faces.triangle)
+    return turned(shown.faces.points[shown.faces.corners], light, of_corner, group, LEAST_BEND * tolerance * mean)
+
+
+def _light_of_faces(surfaces: Surfaces, shown: Lit) -> tuple[Floats, float]:
+    """Light at the corners of faces, (faces, 3, c), where any has a back with that of both sides; and the mean."""
+    count = len(shown.faces.triangle)
+    values, weight = shown.corner_irradiance(), shown.weights(surfaces)
     _, mean = lit_area(weight, weight * values.mean(axis=(1, 2)))
-    return turned(corners, np.concatenate(sides, axis=2), of_corner, group, LEAST_BEND * tolerance * mean)
+    if len(values) == count:
+        return values, mean
+    light = np.zeros((count, 3, 6))
+    light[:, :, :3] = values[:count]
+    light[shown.face[count:], :, 3:] = values[count:]
+    return light, mean
 
 
 def turned(corners: Floats, values: Floats, of_corner: Ints, group: Ints, least: float) -> Ints:
@@ -94,8 +101,11 @@ class _Net:
         self._at, self._light = corners.reshape(-1, 3), values.reshape(3 * len(values), -1)
         self._group, self._twin = group, _twins(of_corner)
         self._corner = np.arange(3 * len(group)).reshape(-1, 3)
-        slope, length = self._slopes(self._corner)
-        self._slope, self._length = slope.reshape(len(self._at), -1), length.ravel()
+        self._slope, self._length = np.empty_like(self._light), np.empty(len(self._at))
+        for first in range(0, len(group), TRIANGLES_AT_ONCE):
+            slope, length = self._slopes(self._corner[first : first + TRIANGLES_AT_ONCE])
+            edges = slice(3 * first, 3 * first + length.size)
+            self._slope[edges], self._length[edges] = slope.reshape(length.size, -1), length.ravel()
 
     def turned(self, least: float) -> Ints:
         """Turn diagonals until light bends no less; returns the triangles' corners, (n, 3)."""
@@ -142,6 +152,20 @@ class _Net:
 
     def _turns(self, edge: Ints) -> _Turns:
         """Those of some edges whose turning is worth it."""
+        starts = range(0, max(len(edge), 1), TRIANGLES_AT_ONCE)
+        better = zip(*(self._better(edge[k : k + TRIANGLES_AT_ONCE]) for k in starts), strict=True)
+        gain, edge, outer, made, slope, length = (np.concatenate(parts) for parts in better)
+        beyond = self._twin[outer] // 3
+        around = np.concatenate([edge[:, None] // 3, self._twin[edge][:, None] // 3, beyond], axis=1)
+        around = np.where(around < 0, around[:, :1], around)
+        # Of nearly equal gains the first: where a scene is symmetrical, rounding must not decide.
+        rank = np.empty(len(edge), dtype=np.int64)
+        rank[np.lexsort([-edge, np.rint(STEPS_OF_GAIN * np.log2(gain))])] = np.arange(len(edge))
+        return _Turns(edge, outer, around, rank, made, slope, length)
+
+    def _better(self, edge: Ints) -> tuple[Floats, Ints, Ints, Ints, Floats, Floats]:
+        """Of those edges across which light then bends less, by how much, and as `_Turns` has them: the edges, those
+        around, and the triangles made, with slopes and lengths."""
         outer = self._around(edge)
         a, b, d, c = self._corner.ravel()[outer].T
         made = np.stack([a, b, d, a, d, c], axis=1).reshape(-1, 2, 3)
@@ -155,14 +179,8 @@ class _Net:
             before += self._bends(outer[:, k], self._slope[outer[:, k]])
             after += self._bends(outer[:, k], slope[:, of_made])
         better = np.flatnonzero(after < (1.0 - LEAST_GAIN) * before)
-        gain, edge, outer = (before - after)[better], edge[better], outer[better]
-        beyond = self._twin[outer] // 3
-        around = np.concatenate([edge[:, None] // 3, self._twin[edge][:, None] // 3, beyond], axis=1)
-        around = np.where(around < 0, around[:, :1], around)
-        # Of nearly equal gains the first: where a scene is symmetrical, rounding must not decide.
-        rank = np.empty(len(edge), dtype=np.int64)
-        rank[np.lexsort([-edge, np.rint(STEPS_OF_GAIN * np.log2(gain))])] = np.arange(len(edge))
-        return _Turns(edge, outer, around, rank, made[better], slope[better], length[better])
+        gain = (before - after)[better]
+        return gain, edge[better], outer[better], made[better], slope[better], length[better]
 
     def _sound(self, made: Ints) -> NDArray[np.bool_]:
         """Whether pairs of triangles (m, 2, 3) are wound alike, and none is too small for the other, (m,)."""
