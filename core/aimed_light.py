@@ -45,6 +45,11 @@ class AimedLight:
         """The places that light comes from."""
         return np.unique(np.concatenate([self.even.emitter, self.odd.emitter]))
 
+    def bytes(self) -> int:
+        """What it takes in memory."""
+        halves = (self.even, self.odd)
+        return sum(half.receiver.nbytes + half.emitter.nbytes + half.weight.nbytes for half in halves)
+
     def irradiance(self, radiance: Singles) -> tuple[Floats, Floats]:
         """Irradiance over pi, (n, 3), and how much more of its luminance the even rays bring than the others, (n,)."""
         if not len(self.even.emitter) and not len(self.odd.emitter):

@@ -47,13 +47,15 @@ from .lighting import (
     result_of,
 )
 from .lit import Lit
+from .memory import BYTES_PER_TRIANGLE, WITHIN, Memory
+from .met_places import bytes_of_tables
 from .patches import PatchTree, clustered_patches, coarse_count
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers
 from .relight import KeptTransport, keep, parts_of, shapes_of
 from .result import BakeResult
-from .rows import BYTES_PER_RAY, COVER_GAP
+from .rows import COVER_GAP
 from .scene import Floats, Ints, Scene
 from .settings import LARGEST, BakeSettings
 from .subdivision import Faces, input_faces
@@ -88,30 +90,6 @@ EFFORTS = {
     "HIGH": Effort(16_000, 128, 0.00375, GatherRays(768, 0.0065, 128, 256, 512, 0.005)),
 }
 
-BYTES_PER_CELL = 400
-"""Of what is seen of its two sides, and where these lie on the faces, with the working copies made of them."""
-
-CELLS_SHARE = 0.2
-"""Share of the memory that cells may take."""
-
-BYTES_OF_BATCHES = 12 * 2**20
-"""Of the rays that are on their way."""
-
-BYTES_PER_VERTEX = 4096
-"""Of the receivers, faces and values of a vertex, with working copies, but without what its rays met."""
-
-BYTES_PER_TRIANGLE = 600
-"""Of the scene, in the ray library too."""
-
-WITHIN = 1.1
-"""Share of the memory limit that a bake may take without a word."""
-
-LEAST_RAYS_SHARE = 0.25
-"""Share of the memory that traced rays may take in any case: else what the scene's own vertices leave of it."""
-
-LEAST_VERTICES_SHARE = 0.25
-"""Share of the memory that vertices may take in any case: else what rays and cells leave of it."""
-
 FINER_FACES = 32.0
 """Times smaller than patches that faces may become where light changes fast, when the minimum size is automatic."""
 
@@ -130,12 +108,6 @@ larger."""
 FINER_CUTS = 2.0
 """Times smaller still where the outline of another object crosses them."""
 
-BYTES_PER_SORTED_RAY = 48
-"""Of a traced ray while light is gathered: itself, and its part in the form factors."""
-
-WORKING_COPIES = 6
-"""Times the traced rays are in memory while they are sorted into form factors: hits, sorted hits, marks and keys."""
-
 CELLS_ALONG_PATCH = 4.0
 """Cells along the edge of the smallest patch, in which what rays look up is interpolated."""
 
@@ -144,9 +116,6 @@ SPLIT_FROM = 2.0
 
 CELLS_ALONG_FACE = 2.0
 """The same along that of the smallest face, where faces are not smaller than patches."""
-
-BYTES_PER_PLACE = 4
-"""Kept for every gather ray: the place it met."""
 
 RAYS_TO_FIND_CUTS = 16
 """Rays that tell whether a place on an edge is hidden."""
@@ -215,14 +184,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     lit = _lit_sides(surfaces, rays, settings)
 
     walked = rays.rays
-    memory = settings.memory_limit * 2**20
-    per_vertex = BYTES_PER_VERTEX + BYTES_PER_PLACE * effort.gather.hemisphere
-    # What sorting takes is given back, but not all of it can be used again: the scene's own vertices need theirs beside
-    # it, and about each patch there is one more.
-    own = per_vertex * len(np.unique(surfaces.triangles[surfaces.baked]))
-    for_rays = max(memory - own, int(LEAST_RAYS_SHARE * memory))
-    with_vertices = per_vertex // effort.rays_per_patch if settings.output == "REFINED" else 0
-    most_rays = for_rays // (BYTES_PER_RAY * WORKING_COPIES + with_vertices)
+    memory = Memory(settings.memory_limit * 2**20, effort.rays_per_patch, effort.gather.hemisphere)
+    refined = settings.output == "REFINED"
+    most_rays = memory.most_traced_rays(len(np.unique(surfaces.triangles[surfaces.baked])), refined)
     transport, rounds, area = subdivided(surfaces, rays, lit, settings, effort, most_rays, clock)
     tree, per_row = transport.tree, transport.rays_per_row
     smallest, finest = minimum_sizes(surfaces, settings, effort, area)
@@ -245,7 +209,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         max(smallest / CELLS_ALONG_PATCH, finest / CELLS_ALONG_FACE),
         cover,
         COVER_GAP * rays.scale * finest,
-        int(CELLS_SHARE * memory) // BYTES_PER_CELL,
+        memory.most_cells(),
     )
     patches = TracedPatches(len(tree), balance, emitters, direct, cells)
     light = light_of_patches(patches, surfaces)
@@ -254,9 +218,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     clock.start("Gathering", 0.5, 0.95)
     radiance = Radiance.of(cells, light.seen, surfaces.world)
     gathering = clock.repeated(GATHER_SHARE, lambda: f"{rays.rays:,} rays")
-    most_kept = memory // (2 * BYTES_PER_PLACE)
-    taken = BYTES_OF_BATCHES + BYTES_PER_SORTED_RAY * transport.kept_rays() + BYTES_PER_CELL * len(cells.node)
-    most_vertices = max(memory - taken, int(LEAST_VERTICES_SHARE * memory)) // per_vertex
+    most_kept = memory.most_places_kept()
+    room = memory.room(transport.kept_rays(), len(cells.node))
 
     per_receiver = effort.gather
     bright: BrightPlaces | None = None
@@ -301,7 +264,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         drawn = shown
     else:
         aside = transport.is_aside()
-        sizes = FaceSizes(smallest, finest, finest_cut, LARGEST_PATCH * area, most_vertices)
+        sizes = FaceSizes(smallest, finest, finest_cut, LARGEST_PATCH * area, room)
         shown, leaves, crowded = light_up_in_detail(
             surfaces,
             lit,
@@ -365,9 +328,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
     }
-    per_vertex = BYTES_PER_VERTEX + BYTES_PER_PLACE * shown.gathered.places.rays
-    taken += BYTES_PER_TRIANGLE * len(surfaces.triangles) + per_vertex * len(shown.places.points)
-    warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory)
+    taken = room.taken(len(shown.places.points), bytes_of_tables(shown.gathered.places))
+    taken += BYTES_PER_TRIANGLE * len(surfaces.triangles)
+    warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory.limit)
     warnings += patch_limit_warnings(rounds, len(tree.patches()), settings.patch_limit)
     story = Story(settings, counts, warnings)
     kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, diagonals, cuts, checks, story)

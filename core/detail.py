@@ -20,6 +20,8 @@ from .direct import LUMINANCE
 from .error_estimate import interpolation_error, lit_area
 from .gather import Gathered, Mixture
 from .lit import Lit
+from .memory import Room
+from .met_places import bytes_of_tables
 from .mixtures import middles_in_between
 from .patches import PatchTree
 from .receivers import Receivers, receivers
@@ -54,15 +56,15 @@ class FaceSizes:
     largest : float, scene units squared
         Area that a patch counts for at most: one that nothing is near enough to for the form factors to have split it
         is background, however wide.
-    most_vertices : int
-        Receivers that there may be.
+    room : Room
+        For receivers and what their rays met.
     """
 
     patches: float
     smallest: float
     smallest_cut: float
     largest: float
-    most_vertices: int
+    room: Room
 
 
 RECEIVERS_OF_SPLIT = 2
@@ -170,7 +172,7 @@ def light_up_in_detail(
         first_new = 0
         for _ in range(MOST_ROUNDS):
             nodes = nodes_to_split(first_new)
-            crowded = shown.receivers() + RECEIVERS_OF_SPLIT * len(nodes) > sizes.most_vertices
+            crowded = not shown.fits(RECEIVERS_OF_SPLIT * len(nodes), sizes.room)
             if len(nodes) == 0 or crowded:
                 full |= len(nodes) > 0
                 break
@@ -218,9 +220,10 @@ class _ShownFaces:
         kept = ~self._changed_shells[self._shell_of_node[self._first.faces.node]]
         return [(self._first, kept), (self._changed, np.ones(len(self._changed.faces.triangle), dtype=bool))]
 
-    def receivers(self) -> int:
-        """Places where light was gathered."""
-        return len(self._first.places.points) + len(self._changed.places.points)
+    def fits(self, more: int, room: Room) -> bool:
+        """Whether there is room for so many more places where light is gathered."""
+        first, changed = self._first.gathered.places, self._changed.gathered.places
+        return room.holds(len(first) + len(changed), bytes_of_tables(first, changed), more)
 
     def missed_light(self) -> Floats:
         """As `_missed_light`, of all faces."""

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from .cells import Cells
+from .cells import SPECIAL, Cells
 from .direct import LUMINANCE
 from .divisions import Divisions
 from .lit import Lit
@@ -31,7 +31,7 @@ patch's own radiosity: what was gathered at three points says less of its mean t
 MOST_CORRECTED = 0.1
 """Share by which the light at the vertices is made to agree with the patches' power at most."""
 
-MET_AT_ONCE = 2**20
+MET_AT_ONCE = 2**17
 """Places met by rays that are looked through at once."""
 
 
@@ -65,14 +65,13 @@ class PlacesOnFaces:
         self.tree, self.copied = tree, cells.copied
         count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
-        # Behind the places come the cells of the world's map.
-        seen = np.zeros(count + MAP_CELLS, dtype=bool)
+        # Behind the places come the cells of the world's map, and what is none counts from the end.
+        seen = np.zeros(count + MAP_CELLS + SPECIAL, dtype=bool)
         # As indices, places take twice the memory, which is that of all gather rays: some at a time.
-        rows = MET_AT_ONCE // max(met.rays, 1)
+        rows = max(1, MET_AT_ONCE // max(met.rays, 1))
         named = met.named()
         for first in range(0, len(named), rows):
-            some = met.places(named[first : first + rows])
-            seen[some[some >= 0]] = True
+            seen[met.places(named[first : first + rows])] = True
         seen[met.places_aimed_at()] = True
         seen[cells.copied] |= seen[count - len(cells.copied) : count]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)

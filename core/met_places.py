@@ -39,6 +39,10 @@ class MetTable:
     def __len__(self) -> int:
         return len(self.places)
 
+    def bytes(self) -> int:
+        """What it takes in memory."""
+        return self.places.nbytes + self.aimed.bytes()
+
 
 @dataclass(frozen=True, eq=False)
 class MetPlaces:
@@ -143,6 +147,12 @@ class MetPlaces:
     def _number(self, named: Ints) -> Ints:
         number: Ints = np.minimum(np.searchsorted(named, self.rows), max(len(named) - 1, 0))
         return number
+
+
+def bytes_of_tables(*places: MetPlaces) -> int:
+    """What the tables of some receivers take together."""
+    tables = {id(table): table for receivers in places for table in receivers.tables}
+    return sum(table.bytes() for table in tables.values())
 
 
 def weighted(weights: Floats | Singles, values: Floats, which: Ints) -> Floats:
