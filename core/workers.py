@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 RAYS_PER_BATCH = 32768
 """Rays handed to the ray library at once: short enough (about 10 ms) to report and to stop, long enough to be fast."""
 
-FEWEST_RAYS_PER_BATCH = 4096
+FEWEST_RAYS_PER_BATCH = 8192
 
 BATCHES_OF_SHORT_WORK = 8
 """Batches that little work is cut into, so that no thread waits long for the last."""
