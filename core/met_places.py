@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from operator import is_
 from typing import Any
 
 import numpy as np
@@ -84,16 +83,19 @@ class MetPlaces:
         return len(self.rows)
 
     def joined(self, others: MetPlaces) -> MetPlaces:
-        """Those of these receivers, then those of others, which may go on from these, with more tables."""
+        """Those of these receivers, then those of others, with each table once."""
         rays = min(self.rays, others.rays)
-        own = len(self.tables)
-        goes_on = own > 0 and len(others.tables) >= own and all(map(is_, self.tables, others.tables))
-        first = 0 if goes_on else sum(len(table) for table in self.tables)
-        tables = others.tables if goes_on else self.tables + others.tables
+        tables = {id(table): table for table in self.tables + others.tables}.values()
+        begin = dict(zip(map(id, tables), _begins(tuple(tables)), strict=True))
+        # Each of theirs moves to where the same table is now.
+        moved = np.array([begin[id(table)] for table in others.tables], dtype=np.int64) - _begins(others.tables)
+        theirs = others.rows
+        if moved.any():
+            theirs = theirs + moved[np.searchsorted(_begins(others.tables), theirs, side="right") - 1]
         wide = max(self.rows.shape[1], others.rows.shape[1])
-        rows = np.concatenate([_widened(self.rows, wide), first + _widened(others.rows, wide)])
+        rows = np.concatenate([_widened(self.rows, wide), _widened(theirs, wide)])
         weights = np.concatenate([_widened(self.weights, wide, 0.0), _widened(others.weights, wide, 0.0)])
-        return MetPlaces(tables if rays else (), rows, weights, rays, max(self.channels, others.channels))
+        return MetPlaces(tuple(tables) if rays else (), rows, weights, rays, max(self.channels, others.channels))
 
     def taken(self, which: Ints) -> MetPlaces:
         """Those of some of the receivers."""
@@ -147,6 +149,13 @@ class MetPlaces:
     def _number(self, named: Ints) -> Ints:
         number: Ints = np.minimum(np.searchsorted(named, self.rows), max(len(named) - 1, 0))
         return number
+
+
+def _begins(tables: tuple[MetTable, ...]) -> Ints:
+    """The first row of each table, counted through all."""
+    counts = np.array([len(table) for table in tables], dtype=np.int64)
+    begins: Ints = np.cumsum(counts) - counts
+    return begins
 
 
 def bytes_of_tables(*places: MetPlaces) -> int:

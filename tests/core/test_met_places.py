@@ -38,6 +38,14 @@ def test_new_receivers_take_their_own_places_among_old_ones(tables):
     np.testing.assert_array_equal(found.places(found.rows[:, 0]), expected)
 
 
+def test_a_table_that_two_have_in_common_is_there_once(tables):
+    one, other = tables
+    common = met(one)
+    found = common.joined(met(other).joined(common))
+    assert len(found.tables) == 2
+    np.testing.assert_array_equal(found.places(found.rows[:, 0]), np.concatenate([one, other, one]))
+
+
 def test_no_place_is_copied(tables):
     one, other = tables
     found = met(one).joined(met(other)).taken(np.arange(3, 9))
