@@ -87,6 +87,45 @@ def test_an_object_that_is_renamed_is_found(trapped):
     assert report()["objects"][0].startswith("Chest")
 
 
+def enter_edit_mode(window):
+    bpy.context.view_layer.objects.active = bpy.data.objects["Box"]
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def rename(window):
+    bpy.data.objects["Box"].name = "Chest"
+
+
+def delete(window):
+    bpy.data.objects.remove(bpy.data.objects["Box"])
+
+
+def give_another_mesh(window):
+    bpy.data.objects["Box"].data = bpy.data.meshes["Floor"]
+
+
+def show_another_scene(window):
+    other = bpy.data.scenes.new("Other")
+    bpy.context.window.scene = other
+    window.scene, window.view_layer = other, other.view_layers[0]
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "state"),
+    [
+        (enter_edit_mode, delete, "CANCELLED"),
+        (show_another_scene, delete, "CANCELLED"),
+        (give_another_mesh, rename, "CANCELLED"),
+        (rename, show_another_scene, "FINISHED"),
+    ],
+)
+def test_two_traps_at_once_end_in_one_sentence_too(trapped, first, second, state):
+    first(trapped[1])
+    second(trapped[1])
+    sentence_at_the_end(trapped, {state})
+    assert not any(mesh.validate() for mesh in bpy.data.meshes)
+
+
 def test_a_scene_that_is_deleted_ends_the_bake(trapped):
     _, window = trapped
     scene, other = bpy.context.scene, bpy.data.scenes.new("Other")
