@@ -37,7 +37,7 @@ from .refined import values_of_corners
 from .sets import add_sets, name_of_set
 from .settings import bake_settings
 from .store import ChangedMeanwhileError, check_storable, check_unchanged, scene_of, store, view_layer_of
-from .survey import Survey
+from .survey import Survey, UnlikeFramesError
 from .targets import baked_targets
 from .transports import remember
 
@@ -139,6 +139,7 @@ class FrameRange:
         # Refined meshes in one file are those of one tracing.
         self._one_tracing = files is None and settings.output == "REFINED"
         self._survey = Survey()
+        self._first_look: Extraction | None = None
         self._to_look_at = list(frames) if self._one_tracing and len(frames) > 1 else []
         self._to_light = list(frames)
         self._dark: list[int] = []
@@ -208,8 +209,14 @@ class FrameRange:
         extraction, read = self._read
         if self._to_look_at:
             frame = self._to_look_at.pop(0)
+            self._first_look = self._first_look or extraction
             with named(frame):
-                self._survey.look(frame, extraction.scene)
+                try:
+                    self._survey.look(frame, extraction.scene)
+                except UnlikeFramesError:
+                    # A mesh that was edited meanwhile did not move from frame to frame.
+                    check_unchanged(self._first_look)
+                    raise
             if not self._to_look_at:
                 self._to_light = self._survey.order()
             return
