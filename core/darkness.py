@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .errors import NoLightError
 from .result import BakedMesh, BakeResult
 from .scene import Scene, SurfaceMesh
 from .settings import BakeSettings
@@ -17,19 +18,23 @@ from .settings import BakeSettings
 _LIGHT = ("radiosity", "irradiance", "radiosity_back", "irradiance_back")
 
 
-def darkness(scene: Scene, settings: BakeSettings, like: Sequence[BakedMesh] | None = None) -> BakeResult:
+def darkness(
+    scene: Scene, settings: BakeSettings, why: NoLightError, like: Sequence[BakedMesh] | None = None
+) -> BakeResult:
     """Give back black meshes.
 
     Parameters
     ----------
     scene : Scene
     settings : BakeSettings
+    why : NoLightError
+        That the bake of this scene raised.
     like : sequence of BakedMesh, optional
         The meshes of this scene in other light, whose subdivision they take; else they are as in the scene.
 
     Returns
     -------
-    With `'dark'` true in the report, in which all that tells of light is missing.
+    With `'dark'` true and the reason in `'ended'` in the report, in which all that tells of light is missing.
     """
     if like is None:
         meshes = tuple(_black(number, mesh) for number, mesh in enumerate(scene.meshes) if mesh.baked)
@@ -43,6 +48,7 @@ def darkness(scene: Scene, settings: BakeSettings, like: Sequence[BakedMesh] | N
         "triangles": sum(len(mesh.triangles) for mesh in meshes),
         "rays": 0,
         "seconds": {"total": 0.0},
+        "ended": str(why),
         "settings": asdict(settings),
         "warnings": [],
     }

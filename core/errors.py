@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What can end a bake early; every text is a sentence fit for Blender's status bar."""
 
-NO_LIGHT = "Nothing in the scene emits light; add a lamp, or give a material some Emission or the World a colour"
-
 
 class BakeError(Exception):
     """A bake cannot be done as asked; the text says what is wrong and what to do."""

@@ -19,7 +19,7 @@ from .cutting import CutEdges, cut_faces, drawn_to_cut, values_on_outlines
 from .direct import Emitters
 from .direct_light import DirectLight
 from .error_estimate import Expected, relative_error
-from .errors import NO_LIGHT, NoLightError
+from .errors import NoLightError
 from .gather import Gathered, look_again
 from .interpolation import InterpolatedRadiance, PlacesOnFaces
 from .lit import Lit
@@ -112,8 +112,17 @@ def check_light(surfaces: Surfaces) -> None:
     NoLightError
     """
     lamps = any(lamp.strength.any() for lamp in surfaces.lamps)
-    if not (lamps or surfaces.emission.any() or surfaces.world.any()):
-        raise NoLightError(NO_LIGHT)
+    if lamps or surfaces.emission.any() or surfaces.world.any():
+        return
+    if surfaces.lamps:
+        first, more = surfaces.lamps[0].name, len(surfaces.lamps) - 1
+        gives = f"and {more:,} more give none: their" if more else "gives none: its"
+        raise NoLightError(
+            f'Nothing in the scene emits light, as "{first}" {gives} power or colour is zero or negative; raise it'
+        )
+    raise NoLightError(
+        "Nothing in the scene emits light; add a lamp, or give a material some Emission or the World a colour"
+    )
 
 
 def light_of_patches(patches: TracedPatches, surfaces: Surfaces) -> PatchLight:

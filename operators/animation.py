@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 from ..core.darkness import darkness
-from ..core.errors import NO_LIGHT, BakeError, Cancelled, NoLightError
+from ..core.errors import BakeError, Cancelled, NoLightError
 from ..core.progress import Progress, ProgressCallback, no_progress
 from ..core.relight import ChangedSceneError, KeptTransport, NotKept, relight
 from ..core.result import BakedMesh, BakeResult
@@ -224,7 +224,7 @@ class FrameRange:
         dark = result.report.get("dark", False)
         traced = not dark and not result.report.get("relit", False)
         if dark and not any(not told["dark"] for told in self._told.values()):
-            self._put_aside(frame)
+            self._put_aside(frame, result.report["ended"])
             return
         if traced:
             self._traced = TracedFrame(result.kept, result.meshes)
@@ -267,23 +267,23 @@ class FrameRange:
                         return replace(relight(before.kept, scene, told), kept=before.kept)
                     except ChangedSceneError:
                         pass
-                    except NoLightError:
-                        return replace(darkness(scene, settings, before.meshes), kept=before.kept)
+                    except NoLightError as why:
+                        return replace(darkness(scene, settings, why, before.meshes), kept=before.kept)
                 if before is not None and one_tracing:
                     raise FrameError(_why_not_relit(before.kept))
                 try:
                     return trace(scene, settings, told)
-                except NoLightError:
-                    return darkness(scene, settings)
+                except NoLightError as why:
+                    return darkness(scene, settings, why)
 
         return light
 
-    def _put_aside(self, frame: int) -> None:
+    def _put_aside(self, frame: int, why: str) -> None:
         self._dark.append(frame)
         if not self._to_light:
             first, last = self._frames[0], self._frames[-1]
             which = f"Frame {first}" if first == last else f"Frames {first} to {last}"
-            raise FrameError(f"{which}: {NO_LIGHT}")
+            raise FrameError(f"{which}: {why}")
 
     def _keep_colours(self, lit: LitFrame) -> None:
         """Keep the colours alone: whole results of many frames would take gigabytes."""

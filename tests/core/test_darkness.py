@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.darkness import darkness
+from radiosity_bake.core.errors import NoLightError
 from radiosity_bake.core.relight import sources_of
 from radiosity_bake.core.scene import LightGroup, PointLamp, Scene, Texture
 from radiosity_bake.core.settings import BakeSettings
@@ -15,6 +16,7 @@ from radiosity_bake.core.settings import BakeSettings
 from tests.core.building import DARK, block, grid
 
 SETTINGS = BakeSettings(quality="DRAFT", minimum_size=0.5, light_groups=True, keep_transport=False)
+WHY = NoLightError("all is off")
 
 
 def scene(strength=1.0, emission=0.0):
@@ -31,18 +33,19 @@ def scene(strength=1.0, emission=0.0):
 def test_black_meshes_are_those_of_the_scene_in_light(output):
     settings = replace(SETTINGS, output=output)
     lit = bake(scene(), settings)
-    dark = darkness(scene(0.0), settings, lit.meshes)
+    dark = darkness(scene(0.0), settings, WHY, lit.meshes)
     for one, other in zip(lit.meshes, dark.meshes, strict=True):
         assert one.triangles is other.triangles and one.vertices is other.vertices
         assert one.radiosity.shape == other.radiosity.shape and not (other.radiosity.any() or other.irradiance.any())
         assert (one.radiosity_back is None) == (other.radiosity_back is None)
         assert one.groups and not other.groups, "groups without light have no values in any bake"
-    assert dark.report["dark"] and dark.report["triangles"] == lit.report["triangles"]
+    assert dark.report["dark"] and dark.report["ended"] == "all is off"
+    assert dark.report["triangles"] == lit.report["triangles"]
 
 
 def test_without_others_to_take_after_black_meshes_are_those_of_the_scene():
     lit = bake(scene(), replace(SETTINGS, output="ORIGINAL"))
-    dark = darkness(scene(0.0), SETTINGS)
+    dark = darkness(scene(0.0), SETTINGS, WHY)
     for one, other in zip(lit.meshes, dark.meshes, strict=True):
         np.testing.assert_array_equal(one.triangles, other.triangles)
         np.testing.assert_array_equal(one.parent_triangle, other.parent_triangle)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.errors import BakeError, Cancelled, NoLightError, NothingToBakeError
-from radiosity_bake.core.scene import Scene, SurfaceMesh, surface_mesh
+from radiosity_bake.core.scene import PointLamp, Scene, SurfaceMesh, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 
 from tests.core.building import DARK, room_with_block
@@ -123,6 +123,15 @@ def test_nothing_to_bake_is_refused_with_what_to_do(meshes):
 def test_a_scene_without_light_is_refused_with_what_to_do():
     with pytest.raises(NoLightError, match=r"Emission.*World"):
         bake(Scene((FLOOR,), DARK), COARSE)
+
+
+@pytest.mark.parametrize("strength", [0.0, -5.0])
+def test_lamps_that_give_no_light_are_named_where_nothing_else_does(strength):
+    lamps = [PointLamp(name, np.array([0.0, 0.0, 1.0]), 0.1, np.full(3, strength)) for name in ("Key", "Fill", "Rim")]
+    with pytest.raises(NoLightError, match='"Key" gives none: its power or colour is zero or negative'):
+        bake(Scene((FLOOR,), DARK, (lamps[0],)), COARSE)
+    with pytest.raises(NoLightError, match='"Key" and 2 more give none: their power or colour'):
+        bake(Scene((FLOOR,), DARK, tuple(lamps)), COARSE)
 
 
 @pytest.mark.parametrize("world", [(-1.0, -1.0, -1.0), (np.nan, 0.0, 0.0)])
