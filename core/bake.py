@@ -330,7 +330,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     }
     taken = room.taken(len(shown.places.points), bytes_of_tables(shown.gathered.places))
     taken += BYTES_PER_TRIANGLE * len(surfaces.triangles)
-    warnings = limit_warnings(rounds, per_row, effort, crowded, taken, memory.limit)
+    once = settings.output == "REFINED" and on_faces is None
+    warnings = limit_warnings(rounds, per_row, effort, crowded, cells.are_fewer or once, taken, memory.limit)
     warnings += patch_limit_warnings(rounds, len(tree.patches()), settings.patch_limit)
     story = Story(settings, counts, warnings)
     kept = KeptTransport(shapes_of(scene), surfaces, lit, patches, shown, on_faces, diagonals, cuts, checks, story)
@@ -462,9 +463,25 @@ def subdivide(
 
 
 def limit_warnings(
-    rounds: refinement.Refinement, rays_per_patch: int, effort: Effort, crowded: bool, taken: int, memory: int
+    rounds: refinement.Refinement,
+    rays_per_patch: int,
+    effort: Effort,
+    crowded: bool,
+    coarse: bool,
+    taken: int,
+    memory: int,
 ) -> tuple[str, ...]:
-    """Sentences on limits that the bake ran into, when it took so many bytes of so many that it may take, at least."""
+    """Sentences on limits that the bake ran into.
+
+    Parameters
+    ----------
+    crowded : bool
+        Whether there was room for fewer vertices than were wanted.
+    coarse : bool
+        Whether there was none for what rays see as finely as was wanted.
+    taken, memory : int
+        Bytes that the bake took, at least, and may take.
+    """
     warnings = []
     if rounds.ended == refinement.LIMIT_MET:
         warnings.append("The memory limit ended the subdivision early; raise it or the minimum size for an even result")
@@ -474,6 +491,8 @@ def limit_warnings(
         )
     if crowded:
         warnings.append("The memory limit ended the search for shadow borders early; raise it for finer shadows")
+    if coarse:
+        warnings.append("The memory limit left less room for the light that rays see; raise it for more exact light")
     if taken > WITHIN * memory:
         warnings.append(
             f"The scene itself is larger than the memory limit: its bake took about {taken / 2**20:,.0f} MiB, "

@@ -75,6 +75,8 @@ class Cells:
         Rays shorter than that see another place than the one that they met.
     copied : (copies,) int
         The place that each copy is one of; copies are the last places.
+    are_fewer : bool
+        Whether `most` made them larger.
     """
 
     def __init__(
@@ -100,6 +102,7 @@ class Cells:
             most_along[leaves] = MOST_CELLS_ALONG_LEAF
             roots = np.union1d(roots[~self._is_wide[roots]], leaves)
         along = np.clip(np.ceil(tree.sizes(roots) / size), 1, most_along[roots]).astype(np.int64)
+        self.are_fewer = bool(most < (along**2).sum() and most < MOST_CELLS)
         while (along**2).sum() > min(most, MOST_CELLS) and along.max() > 1:
             along = np.minimum(along, max(1, int(0.8 * along.max())))
         cells = along**2

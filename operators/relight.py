@@ -70,7 +70,10 @@ def relight_scene(context: bpy.types.Context, progress: ProgressCallback = no_pr
 
 
 def _without_effect(settings: BakeSettings) -> BakeSettings:
-    """The settings without those that do not change the result."""
+    """The settings without those that a relight need not share with its bake.
+
+    These are how it is computed and in which memory, and the report of the bake says what that left out.
+    """
     default = BakeSettings()
     return replace(
         settings,

@@ -6,7 +6,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.scene import PointLamp, Scene
+from radiosity_bake.core.settings import BakeSettings
+
+from tests.core.building import DARK, block, grid
 
 ROOT = Path(__file__).resolve().parents[2]
 ABOVE_THE_LIMIT = 1.1
@@ -55,3 +61,19 @@ def test_a_bake_that_wants_more_keeps_to_the_limit_and_says_what_it_left_out(sce
     assert warnings >= 1
     # Less than half of it would be coarser than need be.
     assert 0.5 < share <= ABOVE_THE_LIMIT
+
+
+@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
+def test_less_memory_changes_nothing_or_a_warning_says_so(output):
+    lamp = PointLamp("Lamp", np.array([0.7, 0.3, 0.6]), 0.02, np.ones(3))
+    meshes = (grid("Floor", 1, reflectance=(0.5,) * 3), block("Box", (0.4, 0.4, 0.0), (0.6, 0.6, 0.2)))
+    scene = Scene(meshes, DARK, (lamp,))
+    told, values = [], []
+    for limit in (64, 256, 2048):
+        result = bake(scene, BakeSettings(quality="DRAFT", output=output, memory_limit=limit, keep_transport=False))
+        told.append([warning for warning in result.report["warnings"] if "memory limit" in warning])
+        values.append([mesh.irradiance for mesh in result.meshes])
+    assert told[0] and not told[-1], "the least limit is too little for this scene, so that the test can fail"
+    for warnings, found in zip(told, values, strict=True):
+        same = all(np.array_equal(one, other) for one, other in zip(found, values[-1], strict=True))
+        assert same or warnings
