@@ -114,16 +114,19 @@ def vertex_of_corner(mesh: Any) -> NDArray[np.int32]:
     return corners
 
 
-def picture(width: int, height: int, path_traced: bool, samples: int = PICTURE_SAMPLES) -> Floats:
+def picture(width: int, height: int, path_traced: bool, samples: int = PICTURE_SAMPLES, seed: int = 0) -> Floats:
     """Return (h, w, 3) the scene's radiance as its camera sees it, rows from above.
 
     Parameters
     ----------
     path_traced : bool
         With `samples` for each pixel, and denoised; else with just as many as smooth outlines need.
+    seed : int
+        Of the noise.
     """
     set_up(samples if path_traced else OWN_PICTURE_SAMPLES)
     scene = bpy.context.scene
+    scene.cycles.seed = seed
     if path_traced:
         scene.cycles.use_denoising = True
         scene.cycles.denoiser = "OPENIMAGEDENOISE"

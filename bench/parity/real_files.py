@@ -83,7 +83,8 @@ def measured(picture: Path) -> dict[str, Any]:
     row: dict[str, Any] = {"objects": len(things), "blender": bpy.app.version_string, "warnings": [], "picture": None}
     if not things:
         return {**row, "said": "Nothing in it renders as faces"}
-    theirs = cycles.picture(WIDTH, HEIGHT, True, SAMPLES) if bpy.context.scene.camera is not None else None
+    seen = bpy.context.scene.camera is not None
+    theirs, again = (cycles.picture(WIDTH, HEIGHT, True, SAMPLES, seed) if seen else None for seed in (0, 1))
     cycles.select(things)
     before = state()
     # As it looks in the end: light in vertices, colours from the materials' own textures.
@@ -103,9 +104,10 @@ def measured(picture: Path) -> dict[str, Any]:
     ours = cycles.picture(WIDTH, HEIGHT, False) if theirs is not None else None
     bpy.ops.radiosity.restore()
     row["left"] = differences(before, state())[:5]
-    if theirs is not None and ours is not None:
+    if theirs is not None and again is not None and ours is not None:
         pictures.write(picture, theirs, ours)
-        row |= {"picture": picture.name, **likeness(theirs, ours)}
+        noise = likeness(theirs, again)["picture_difference"] / np.sqrt(2.0)
+        row |= {"picture": picture.name, **likeness(theirs, ours), "picture_noise": round(float(noise), 4)}
     return row
 
 

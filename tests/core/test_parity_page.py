@@ -50,11 +50,20 @@ def test_a_row_is_met_within_two_percent_and_the_noise(difference, noise, expect
         {"file_changed": True},
         {"said": "Nothing in the scene emits light"},
         {"failed": "its process ended with code -11"},
+        {"picture_difference": 0.03},
+        {"picture_difference_of_mean": 0.015},
+        {"picture_difference_of_mean": -0.015},
     ],
 )
-def test_a_room_that_is_black_slow_changed_or_not_baked_is_not_met(change):
+def test_a_room_that_is_black_slow_changed_unlike_or_not_baked_is_not_met(change):
     assert met(ROOM)
     assert not met({**ROOM, **change})
+
+
+def test_the_noise_of_cycles_picture_is_not_held_against_a_room_nor_is_a_camera_that_is_missing():
+    assert met({**ROOM, "picture_difference": 0.03, "picture_noise": 0.008})
+    assert not met({**ROOM, "picture_difference": 0.03, "picture_noise": 0.006})
+    assert met({name: value for name, value in ROOM.items() if not name.startswith("picture")})
 
 
 def test_a_file_with_nothing_to_bake_is_met_if_it_is_left_as_it_was():
@@ -73,5 +82,7 @@ def test_the_page_counts_what_is_met_shows_pictures_and_tells_what_failed():
     assert "**2 of 4 rows are met.**" in text
     assert "**Spot** is not met: its texture was left out." in text
     assert "**Sky Texture** is not met: RuntimeError: no sky." in text
+    assert "A bedroom: its picture differs" not in text
+    assert "A bedroom: its picture differs" in page({"bedroom": {**ROOM, "picture_difference": 0.03}})
     assert "images/parity/sun.jpg" in text and "images/parity/bedroom.jpg" in text
     assert "World: its texture was left out" in text
