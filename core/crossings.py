@@ -122,8 +122,8 @@ def find_crossings(surfaces: Surfaces, rays: RayScene, lit: NDArray[np.bool_], s
     beside = np.einsum("kx,kjx->kj", lines.across, way) - lines.offset[:, None]
     # What runs along an edge cuts nothing.
     within = np.minimum(beside.max(axis=1), -beside.min(axis=1)) > SAME_LINE * size
-    first, last = _sections(beside, np.einsum("kx,kjx->kj", lines.along, way))
-    divides = within & (lines.low < first + SAME_LINE * size) & (lines.high > last - SAME_LINE * size)
+    enters, leaves = _sections(beside, np.einsum("kx,kjx->kj", lines.along, way))
+    divides = within & (lines.low < enters + SAME_LINE * size) & (lines.high > leaves - SAME_LINE * size)
     thin = (thickness < LARGEST_THICKNESS * smallest) & (length > LEAST_SLENDERNESS * thickness)
     kept = np.flatnonzero((thin | divides) & (length > shortest))
     within = within[kept]
