@@ -75,7 +75,8 @@ class TriangleMeans:
     def reflectance(self, surfaces: Surfaces) -> Floats:
         """Of what is opaque of each element, (count, 3)."""
         reflectance = self.of_opaque(self.of(surfaces.reflectance, surfaces.reflectance_texture), surfaces)
-        return reflectance if surfaces.transmittance is None else np.minimum(reflectance, 1.0)
+        # A mean of ones is more than one by rounding, and would absorb less than nothing.
+        return np.minimum(reflectance, 1.0)
 
     def emission(self, surfaces: Surfaces) -> Floats:
         """Of what is opaque of each element, (count, 3), W m^-2 sr^-1."""

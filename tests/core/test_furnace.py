@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where energy goes: furnaces that glow evenly, light that nothing absorbs, and the balance of the whole."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
@@ -9,7 +11,7 @@ from radiosity_bake.core.errors import UnsolvableError
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
 
-from tests.core.building import cornell_box, flipped, mean_over, room_with_block
+from tests.core.building import cornell_box, flipped, grid, mean_over, room_with_block
 from tests.scenes import exact
 
 SETTINGS = BakeSettings(quality="DRAFT", minimum_size=0.3)
@@ -78,6 +80,14 @@ def test_white_surfaces_in_the_open_are_solved():
         for m in scene.meshes
     )
     assert bake(Scene(meshes, np.zeros(3)), SETTINGS).report["converged"]
+
+
+def test_white_surfaces_absorb_no_less_than_nothing():
+    # Clusters of a bumpy sheet, whose mean reflectance is summed up from those of many triangles.
+    sheet, rng = grid("sheet", 13, reflectance=(1.0, 1.0, 1.0)), np.random.default_rng(0)
+    bumpy = replace(sheet, vertices=sheet.vertices + rng.random(sheet.vertices.shape) * (0.01, 0.01, 0.02))
+    settings = BakeSettings(quality="DRAFT", patch_limit=30)
+    assert 0.0 <= bake(Scene((bumpy,), np.ones(3)), settings).report["energy"]["absorbed"] < 1e-12
 
 
 def test_the_energy_that_comes_in_goes_somewhere(room_good):
