@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from radiosity_bake.core.errors import Cancelled
-from radiosity_bake.operators.bake import bake_objects, reason_not_to_bake
+from radiosity_bake.operators.bake import bake_objects, profile, reason_not_to_bake
 from radiosity_bake.operators.doors import Watch
 from radiosity_bake.operators.settings import bake_settings
 
@@ -236,10 +236,19 @@ def test_the_report_says_where_the_time_went():
     add_cube(select=True)
     add_lamp_mesh()
     bake_selected()
-    profile = report()["profile"]
-    assert set(profile) == {"ray_library", "arrays", "blender"}
-    assert sum(profile.values()) == pytest.approx(1.0, abs=1e-3)
-    assert min(profile.values()) > 0.0
+    shares = report()["profile"]
+    assert set(shares) == {"ray_library", "arrays", "blender"}
+    assert sum(shares.values()) == pytest.approx(1.0, abs=1e-3)
+    assert min(shares.values()) > 0.0
+
+
+def test_the_shares_of_the_time_are_of_the_clock_and_the_ray_librarys_that_of_one_thread():
+    seconds = {"extract": 0.5, "store": 1.5, "total": 10.0}
+    two_threads = profile(seconds, {"seconds_in_ray_library": 10.0, "threads": 2})
+    assert two_threads == pytest.approx({"ray_library": 0.5, "arrays": 0.3, "blender": 0.2})
+    one_thread = profile(seconds, {"seconds_in_ray_library": 3.0, "threads": 1})
+    assert one_thread == pytest.approx({"ray_library": 0.3, "arrays": 0.5, "blender": 0.2})
+    assert profile(seconds, {}) == pytest.approx({"ray_library": 0.0, "arrays": 0.8, "blender": 0.2})
 
 
 def test_warnings_of_the_core_are_in_the_report(run_instead):

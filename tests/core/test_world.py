@@ -150,6 +150,32 @@ def test_two_lamps_become_two_suns_and_a_bar_becomes_several():
     assert max(np.degrees(sun.angle) for sun in suns) < 25.0
 
 
+@pytest.mark.parametrize("turned", [0.0, 30.0, 90.0])
+def test_a_tube_that_is_no_wider_than_a_spot_becomes_a_row_of_suns(turned):
+    # 16 by 2 degrees: as wide as a disc of 9 degrees, which alone would not be split.
+    turn = np.radians(turned)
+    along, across = np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
+
+    def tube(d):
+        here = (np.abs(d[:, :2] @ along) < np.sin(np.radians(8.0))) & (np.abs(d[:, :2] @ across) < np.radians(1.0))
+        return np.where(here & (d[:, 2] > 0), 500.0, 0.5)
+
+    suns = split_sky(sky_of(tube), "Sky")[1]
+    assert len(suns) >= 3
+    places = np.array([-sun.direction for sun in suns])
+    assert np.ptp(places[:, :2] @ along) > np.sin(np.radians(8.0))
+    # Half of a texel of 0.7 degrees.
+    assert np.abs(places[:, :2] @ across).max() < np.radians(0.35)
+
+
+def test_another_seed_turns_the_rays_that_look_for_light_at_vertices():
+    # An open floor sees nothing but the sky: what its vertices gather is all that can differ.
+    world = sky_map(sky_of(lambda d: 1.0 + d[:, 2] + 0.5 * d[:, 0]))
+    one, other = (bake(floor_under(world), settings(seed=seed)).meshes[0].irradiance for seed in (0, 1))
+    assert not np.array_equal(one, other)
+    np.testing.assert_allclose(one, other, rtol=0.02)
+
+
 def test_a_bright_place_is_looked_at_closer_and_nothing_is_counted_twice():
     shine = sun_at([1.0, 0.013, 0.02], 1.0, 1e5)
     cube = SkyCube(sky_of(shine).radiance.reshape(6, FACE, FACE, 3))
