@@ -195,13 +195,14 @@ class Radiance:
     @staticmethod
     def of(cells: Cells, radiance: Floats, world: Floats) -> Radiance:
         """Join the radiance of places (2 * cells and twins, 3) with that of the world, (3,) or (sky, 3)."""
-        sky = world if world.ndim > 1 else np.zeros((0, 3))
-        seen = np.concatenate([radiance, sky])
-        values = np.ones((len(seen) + SPECIAL, 4), dtype=np.float32)
-        values[:-SPECIAL, :3] = seen
-        values[: len(radiance)][cells.unlit] = 0.0
+        count, sky = len(radiance), len(world) if world.ndim > 1 else 0
+        values = np.ones((count + sky + SPECIAL, 4), dtype=np.float32)
+        values[:count, :3] = radiance
+        if sky:
+            values[count:-SPECIAL, :3] = world
+        values[:count][cells.unlit] = 0.0
         values[-SPECIAL:] = 0.0
         values[BELOW] = (0.0, 0.0, 0.0, 1.0)
         if world.ndim == 1:
             values[ESCAPED] = (*world, 1.0)
-        return Radiance(values, len(radiance) if world.ndim > 1 else None)
+        return Radiance(values, count if world.ndim > 1 else None)

@@ -88,7 +88,7 @@ class PlacesOnFaces:
         self.whole[divided] = False
         self.divided, self.beside_walls = divisions.number, bool(divisions.thin.any())
         self.at_divided = of_node[divisions.number]
-        self.shares = tuple(np.asarray(share, dtype=np.float32)[:, None] for share in shares.T)
+        self.shares = shares.astype(np.float32)
         self.triangle = tree.triangle[leaf[cell]].astype(np.int32)
 
 
@@ -118,13 +118,15 @@ class InterpolatedRadiance:
         self._translucence = None if translucence is None else translucence[on_faces.place >> 1]
         self._reflectance = reflectance[on_faces.place >> 1]
         self._emission = emission.astype(np.float32)[on_faces.triangle]
+        self._counted = np.where(on_faces.open, on_faces.areas, 0.0)
+        self._power = (solved[on_faces.place] - self._emission) * self._counted[:, None]
 
     def at(self, shown: Lit) -> Floats:
         """Radiance of places when the vertices have the light of `shown`, (places, 3), W m^-2 sr^-1."""
         there = self._on_faces
         corners = corner_irradiance_of_nodes(there.tree, shown)
         corners[there.divided] = shown.gathered.irradiance[there.at_divided]
-        irradiance = sum(share * corners[there.side, k] for k, share in enumerate(there.shares))
+        irradiance = np.einsum("pk,pkc->pc", there.shares, corners.take(there.side, axis=0))
         light = corners @ LUMINANCE.astype(np.float32)
         with np.errstate(invalid="ignore"):
             steep = np.ptp(light, axis=1) > STEEP * light.mean(axis=1)
@@ -133,27 +135,28 @@ class InterpolatedRadiance:
         reflected = self._reflectance * irradiance
         if self._translucence is not None:
             silky = np.flatnonzero(self._translucence.any(axis=1))
-            behind = sum(share[silky] * corners[there.side[silky] ^ 1, k] for k, share in enumerate(there.shares))
+            behind = np.einsum("pk,pkc->pc", there.shares[silky], corners[there.side[silky] ^ 1])
             known[silky] &= np.isfinite(behind[:, 0])
             reflected[silky] += self._translucence[silky] * behind
+        reflected[~known] = 0.0
         reflected *= self._balanced(reflected, known)
-        result[there.place[known]] = (self._emission + reflected)[known]
+        reflected += self._emission
+        place = there.place[known]
+        result[place] = reflected[known]
         lit = np.zeros(len(result), dtype=bool)
-        lit[there.place[known]] = True
+        lit[place] = True
         copies = len(result) - len(there.copied) + np.flatnonzero(lit[there.copied])
         result[copies] = result[there.copied[lit[there.copied]]]
         return result
 
-    def _balanced(self, reflected: NDArray[np.float32], known: NDArray[np.bool_]) -> Floats:
-        """What reflected light is to be multiplied by for as much power as the patches reflect, (3,).
+    def _balanced(self, reflected: Singles, known: NDArray[np.bool_]) -> Floats:
+        """What reflected light, none where it is not known, is to be multiplied by for as much power as the patches
+        reflect, (3,).
 
         Straight lines between vertices cut the tops off: the faces tell how light is spread, the patches how much
         there is of it.
         """
-        there = self._on_faces
-        counted = known & there.open
-        solved = self._solved[there.place[counted]] - self._emission[counted]
-        power, drawn = (there.areas[counted] @ light for light in (solved, reflected[counted].astype(np.float64)))
+        power, drawn = known.astype(np.float64) @ self._power, self._counted @ reflected
         ratio = np.divide(power, drawn, out=np.ones(3), where=drawn > 0.0)
         corrected: Floats = np.clip(ratio, 1.0 - MOST_CORRECTED, 1.0 + MOST_CORRECTED)
         return corrected
