@@ -20,7 +20,7 @@ from .form_factors import point_to_triangle
 from .geometry import order_along_curve
 from .lit_points import LitPoints
 from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
-from .scene import AreaLamp, Cone, Floats, Ints, Lamp, PointLamp, Profile, SunLamp
+from .scene import AreaLamp, Cone, Falloff, Floats, Ints, Lamp, PointLamp, Profile, SunLamp
 from .visibility import OFFSET, RayScene, spread_of_rays
 
 FEW_LAMPS = 32
@@ -347,6 +347,8 @@ def unoccluded(lamp: Lamp, points: Floats, normals: Floats) -> Floats:
             if isinstance(lamp, PointLamp) and lamp.profile is not None:
                 above = above[light[above] > 0.0]
                 light[above] *= _mean_in_profile(lamp, lamp.profile, points[above])
+            if isinstance(lamp, PointLamp) and lamp.falloff is not None:
+                light[above] *= _at_distance(lamp.falloff, square[above])
             summed = summed[height[summed] < reach[summed]]
     summed = summed[_in_beam(lamp, points[summed])]
     places = 1 if _is_sharp(lamp) else PLACES
@@ -435,6 +437,8 @@ def _kernel(lamp: Lamp, facing: Floats, normals: Floats, ways: Floats) -> Floats
         kernel *= _in_cone(lamp.cone, -ways)
     if isinstance(lamp, PointLamp) and lamp.profile is not None:
         kernel *= _in_profile(lamp.profile, -ways)
+    if isinstance(lamp, PointLamp) and lamp.falloff is not None:
+        kernel *= _at_distance(lamp.falloff, square)
     if isinstance(lamp, AreaLamp) and lamp.spread < np.pi:
         half = lamp.spread / 2.0
         tangent = np.sqrt(np.maximum(square - front**2, 0.0)) / np.maximum(front, TINY)
@@ -467,6 +471,12 @@ def _in_cone(cone: Cone, directions: Floats) -> Floats:
     step = np.clip(inside, 0.0, 1.0)
     share: Floats = step * step * (3.0 - 2.0 * step)
     return share
+
+
+def _at_distance(falloff: Falloff, square: Floats) -> Floats:
+    """What a lamp's light is multiplied by at distances, given squared, of any shape."""
+    more: Floats = square ** (falloff.power / 2.0) * square / (falloff.smooth + square)
+    return more
 
 
 def _in_profile(profile: Profile, directions: Floats) -> Floats:

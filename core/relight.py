@@ -159,10 +159,10 @@ def shape_of_lamp(lamp: Lamp) -> bytes:
     """A number that changes with anything about a lamp but its strength and its name."""
     digest = blake2b(type(lamp).__name__.encode(), digest_size=16)
     digest.update(_linking_code(lamp.linking))
-    parts = [getattr(lamp, name, None) for name in ("cone", "profile")]
+    parts = [getattr(lamp, name, None) for name in ("cone", "profile", "falloff")]
     for part in (lamp, *(part for part in parts if part is not None)):
         for field in fields(part):
-            if field.name not in {"name", "strength", "cone", "profile", "linking"}:
+            if field.name not in {"name", "strength", "cone", "profile", "falloff", "linking"}:
                 digest.update(np.asarray(getattr(part, field.name), dtype=np.float64).tobytes())
     return digest.digest()
 

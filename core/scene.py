@@ -202,6 +202,22 @@ class Profile:
     shares: Floats
 
 
+@dataclass(frozen=True)
+class Falloff:
+    """How a lamp's light falls off otherwise than with the square of the distance d: multiplied by d^n d^2 / (s + d^2).
+
+    Attributes
+    ----------
+    power : int
+        n: 1 to fall off with the distance, 2 not to fall off.
+    smooth : float, scene units squared
+        s: by how much it is less near the lamp.
+    """
+
+    power: int
+    smooth: float
+
+
 @dataclass(frozen=True, eq=False)
 class PointLamp:
     """A lamp that shines to all sides, or as a spot. Rays do not meet it.
@@ -221,6 +237,7 @@ class PointLamp:
         Whether surfaces hide it.
     linking : LightLinking
     profile : Profile or None
+    falloff : Falloff or None
     """
 
     name: str
@@ -232,11 +249,12 @@ class PointLamp:
     shadow: bool = True
     linking: LightLinking = UNLINKED
     profile: Profile | None = None
+    falloff: Falloff | None = None
 
     @property
     def is_even(self) -> bool:
-        """Whether it shines to all sides alike."""
-        return self.cone is None and self.profile is None
+        """Whether it shines to all sides alike, and falls off with the square of the distance."""
+        return self.cone is None and self.profile is None and self.falloff is None
 
 
 @dataclass(frozen=True, eq=False)

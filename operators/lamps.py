@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Blender's lamps mean for radiosity: shape, strength and direction, in the units that Cycles gives them."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import bpy
 import numpy as np
 
-from ..core.scene import AreaLamp, Cone, Floats, Lamp, PointLamp, SunLamp
+from ..core.scene import AreaLamp, Cone, Falloff, Floats, Lamp, PointLamp, SunLamp
 from .lamp_profiles import may_have_profile
 from .materials import constant_emission, uses_nodes
+from .node_links import input_of, source_of
+from .node_values import ValueReader
 
 SMALLEST_SPREAD = np.radians(1.0)
 """Radians: at 0 the light of an area lamp is parallel, and all of it would leave in a direction that no ray meets."""
@@ -19,6 +22,10 @@ MANY_BOUNCES = 16
 
 LARGEST_SUN = np.radians(120.0)
 """Radians of a sun's diameter above which it is no disk any more that a few rays could stand for."""
+
+
+_POWERS = {"Quadratic": 0, "Linear": 1, "Constant": 2}
+"""Of the distance, by which the outputs of a Light Falloff node undo that light falls off with its square."""
 
 
 class ReadLamp(NamedTuple):
@@ -58,12 +65,14 @@ def lamp_of(obj: bpy.types.Object, matrix: Floats) -> ReadLamp:
         return ReadLamp(None)
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
         return ReadLamp(None)
-    factor, unread = constant_emission(light) if uses_nodes(light) else (np.ones(3), ())
+    factor, unread, falloff = _emission_of(light)
     limits = tuple(_limits(light))
     axes, centre = matrix[:3, :3], matrix[:3, 3].copy()
     if unread and np.linalg.det(axes) != 0.0 and may_have_profile(light):
         return ReadLamp(_point_lamp(obj, centre, axes, _power(light)), limits, unread, factor)
     power, notes = factor * _power(light), (*unread, *limits)
+    if falloff is not None:
+        return ReadLamp(replace(_point_lamp(obj, centre, axes, power), falloff=falloff), notes)
     if light.type == "SUN":
         return ReadLamp(_sun_lamp(obj, axes, power), notes)
     if np.linalg.det(axes) == 0.0 and light.type in {"AREA", "SPOT"}:
@@ -72,6 +81,27 @@ def lamp_of(obj: bpy.types.Object, matrix: Floats) -> ReadLamp:
         lamp = _area_lamp(obj, centre, axes, power)
         return ReadLamp(lamp, notes if lamp is not None else (*notes, "its size is 0, and it gives no light"))
     return ReadLamp(_point_lamp(obj, centre, axes, power), notes)
+
+
+def _emission_of(light: bpy.types.Light) -> tuple[Floats, tuple[str, ...], Falloff | None]:
+    """Return what the nodes of a lamp multiply its light by, clauses on the unread, and what they make of distance."""
+    if not uses_nodes(light):
+        return np.ones(3), (), None
+    constant = (*constant_emission(light), None)
+    output = light.node_tree.get_output_node("CYCLES")
+    shader, groups = source_of(input_of(output, "Surface"), ()) if output is not None else (None, ())
+    if light.type not in {"POINT", "SPOT"} or shader is None or shader.node.type != "EMISSION":
+        return constant
+    source, outer = source_of(input_of(shader.node, "Strength"), groups)
+    if source is None or source.node.type != "LIGHT_FALLOFF":
+        return constant
+    values = ValueReader()
+    strength, smooth = (values.value(source.node, name, outer) for name in ("Strength", "Smooth"))
+    colour = values.colour(shader.node, "Color", groups)
+    if values.notes:
+        return constant
+    falloff = Falloff(_POWERS[source.identifier], max(float(smooth), 0.0))
+    return colour * strength, (), falloff if falloff != Falloff(0, 0.0) else None
 
 
 def _sun_lamp(obj: bpy.types.Object, axes: Floats, power: Floats) -> SunLamp:

@@ -144,6 +144,16 @@ def _shining_by(light: Any, kind: str, socket: str, output: str = "Color") -> An
     return node, tree
 
 
+@case("Light Falloff that is linear and smooth")
+def lamp_with_falloff() -> list[Any]:
+    """Light that falls off with the distance in place of its square."""
+    floor = stage.room()
+    light = stage.lamp("POINT", shadow_soft_size=0.1).data
+    falloff, _ = _shining_by(light, "ShaderNodeLightFalloff", "Strength", "Linear")
+    falloff.inputs["Strength"].default_value, falloff.inputs["Smooth"].default_value = 1.5, 0.4
+    return [floor]
+
+
 @case("IES file in a turned lamp")
 def lamp_with_ies_file() -> list[Any]:
     """Measured candela, brighter to one side and dark behind."""

@@ -312,8 +312,27 @@ def test_an_emission_node_colours_the_lamp():
     assert not warnings
 
 
+@pytest.mark.parametrize(
+    ("kind", "radius", "output", "smooth"),
+    [("POINT", 0.0, "Constant", 0.0), ("POINT", 0.15, "Linear", 0.4), ("SPOT", 0.1, "Quadratic", 1.5)],
+)
+def test_a_lamp_falls_off_by_its_node_as_in_cycles(kind, radius, output, smooth):
+    floor = add_room()
+    lamp = add_lamp(kind, energy=10.0, shadow_soft_size=radius)
+    if kind == "SPOT":
+        lamp.data.spot_size = 1.5
+    tree = node_tree(lamp.data)
+    shine, falloff = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeLightFalloff")
+    falloff.inputs["Strength"].default_value, falloff.inputs["Smooth"].default_value = 2.0, smooth
+    shine.inputs["Color"].default_value = (0.5, 0.7, 1.0, 1.0)
+    tree.links.new(falloff.outputs[output], shine.inputs["Strength"])
+    tree.links.new(shine.outputs[0], tree.nodes[0].inputs["Surface"])
+    compare_with_cycles(floor)
+    assert report()["warnings"] == []
+
+
 def test_a_node_that_is_not_read_is_named_with_the_lamp():
-    light = add_lamp("POINT", "Key").data
+    light = add_lamp("SUN", "Key").data
     tree = node_tree(light)
     shine, falloff = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeLightFalloff")
     tree.links.new(falloff.outputs["Linear"], shine.inputs["Strength"])

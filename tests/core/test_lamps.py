@@ -15,7 +15,7 @@ from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.relight import ChangedSceneError, relight
 from radiosity_bake.core.sampling import LATTICE_ERROR
-from radiosity_bake.core.scene import AreaLamp, Cone, PointLamp, Profile, Scene, SunLamp
+from radiosity_bake.core.scene import AreaLamp, Cone, Falloff, PointLamp, Profile, Scene, SunLamp
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
 from radiosity_bake.core.visibility import RayScene
@@ -169,6 +169,17 @@ def test_a_profile_counts_where_a_lamp_is_cut_by_the_horizon_and_among_many_lamp
     np.testing.assert_allclose(quarter, 0.25 * whole, rtol=1e-6)
 
 
+@pytest.mark.parametrize(("radius", "soft"), [(0.0, False), (0.4, True)])
+@pytest.mark.parametrize("cone", [None, Cone(np.eye(3), np.cos(1.2), 0.1)])
+def test_a_lamp_falls_off_as_it_is_told(radius, soft, cone):
+    lamp = replace(POINT, radius=radius, soft=soft, cone=cone)
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 1.0, 0.0]])
+    square = (points**2).sum(axis=1) + 1.5**2
+    found = from_above(replace(lamp, falloff=Falloff(1, 0.5)), points) / from_above(lamp, points)
+    # Of a lamp of some size, the middle counts where there is a closed form: its rim is 4% farther away at most, d^1.
+    np.testing.assert_allclose(found, square**0.5 * square / (0.5 + square), rtol=0.05 if radius else 1e-9)
+
+
 @pytest.mark.parametrize("angle", [0.0, 0.01, 0.5])
 def test_a_sun_gives_its_strength_times_the_cosine(angle):
     found, _ = direct([FLOOR], [replace(SUN, angle=angle)], spread(20))
@@ -292,6 +303,7 @@ def test_relighting_gives_what_a_bake_with_the_lamps_new_colour_gives():
         (lambda lamp: (replace(lamp, centre=lamp.centre + 0.1),), '"ball" was changed or moved'),
         (lambda lamp: (replace(lamp, cone=Cone(np.eye(3), 0.5, 0.1)),), '"ball" was changed or moved'),
         (lambda lamp: (replace(lamp, profile=Profile(np.eye(3), 3.0, np.eye(4))),), '"ball" was changed or moved'),
+        (lambda lamp: (replace(lamp, falloff=Falloff(1, 0.0)),), '"ball" was changed or moved'),
         (lambda lamp: (), "Lamps, or bright parts of the World, were added, removed or hidden"),
         (lambda lamp: (lamp, lamp), "Lamps, or bright parts of the World, were added, removed or hidden"),
     ],
