@@ -21,7 +21,7 @@ from .clock import Clock
 from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
 from .dense_meshes import gather_sparsely
-from .detail import FaceSizes, GatherAt, counted_share_of_triangles, light_up, light_up_in_detail
+from .detail import FaceSizes, GatherAt, counted_share_of_triangles, light_up_in_detail, wanted_sides
 from .diagonals import turned_diagonals
 from .direct import all_emitters
 from .divisions import Divisions, blocked_edges
@@ -52,7 +52,7 @@ from .met_places import bytes_of_tables
 from .patches import PatchTree, clustered_patches, coarse_count
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
-from .receivers import Receivers
+from .receivers import Receivers, receivers
 from .relight import KeptTransport, keep, parts_of, shapes_of
 from .result import BakeResult
 from .rows import COVER_GAP
@@ -60,6 +60,7 @@ from .scene import Floats, Ints, Scene
 from .settings import LARGEST, BakeSettings
 from .subdivision import Faces, input_faces
 from .surfaces import Surfaces, join
+from .surroundings import at_receivers, surroundings_of
 from .transport import Transport
 from .visibility import RayScene
 
@@ -213,6 +214,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     )
     patches = TracedPatches(len(tree), balance, emitters, direct, cells)
     light = light_of_patches(patches, surfaces)
+    surroundings = surroundings_of(balance, light.solution, tree)
     traced = rays.rays
 
     clock.start("Gathering", 0.5, 0.95)
@@ -231,27 +233,28 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def indirect_at(places: Receivers) -> Gathered:
         return gather_indirect(transport, cells, radiance, places, per_receiver, finest, most_kept, gathering, bright)
 
-    def indirect_of_first(places: Receivers) -> Gathered:
-        return gather_sparsely(places, indirect_at, SPLIT_FROM * finest, effort.tolerance)
-
-    def gather_first(places: Receivers) -> Gathered:
-        indirect = indirect_of_first(places)
-        return with_direct(transport, emitters, places, per_receiver, gathering, indirect)
-
-    def light_up_first(faces: Faces, share: Floats) -> Lit:
+    def light_up_first(faces: Faces, share: Floats, strict: Floats) -> Lit:
         nonlocal per_receiver, bright
-        first, aimed = light_up(surfaces, lit, faces, share, gather_first), False
+        face, side = wanted_sides(faces, surfaces, lit)
+        places = receivers(surfaces, faces, face, side)
+        at_place = at_receivers(places, strict[face, side])
+
+        def indirect() -> Gathered:
+            return gather_sparsely(places, at_place, indirect_at, SPLIT_FROM * finest, effort.tolerance)
+
+        gathered = with_direct(transport, emitters, places, per_receiver, gathering, indirect())
+        first, aimed = Lit(faces, face, side, places, gathered, share), False
         while True:
-            noise, count = first.noise(surfaces), len(first.places.points)
+            noise, count = first.noise(surfaces, strict), len(places.points)
             enough = enough_rays(per_receiver, effort.gather.hemisphere, noise, count, most_kept)
             if enough is per_receiver:
                 return first
             if not aimed:
-                bright = bright_places(cells, balance, light.solution, light.seen, surfaces)
+                bright = bright_places(cells, balance, light.solution, light.seen, surfaces, surroundings.of_element)
             if aimed or bright is None:
                 per_receiver = enough
             aimed = True
-            first = replace(first, gathered=first.gathered.with_indirect(indirect_of_first(first.places)))
+            first = replace(first, gathered=first.gathered.with_indirect(indirect()))
 
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
@@ -260,7 +263,8 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     walls = ~surfaces.closed[surfaces.shell_of_triangle]
     if settings.output == "ORIGINAL":
         faces = input_faces(surfaces)
-        shown = light_up_first(faces, counted_share_of_triangles(tree, LARGEST_PATCH * area)[faces.triangle])
+        share = counted_share_of_triangles(tree, LARGEST_PATCH * area)[faces.triangle]
+        shown = light_up_first(faces, share, surroundings.of_triangles(tree, len(surfaces.triangles))[faces.triangle])
         drawn = shown
     else:
         aside = transport.is_aside()
@@ -272,6 +276,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             aside.reshape(-1, 2).any(axis=1),
             sizes,
             effort.tolerance,
+            surroundings,
             light_up_first,
             gather_at,
             is_hidden,

@@ -91,7 +91,7 @@ class BrightPlaces:
 
 
 def bright_places(
-    cells: Cells, balance: Balance, solution: Solution, seen: Floats, surfaces: Surfaces
+    cells: Cells, balance: Balance, solution: Solution, seen: Floats, surfaces: Surfaces, strict: Floats
 ) -> BrightPlaces | None:
     """The places that bring most noise to the rays of the hemisphere, or None where nothing is much brighter.
 
@@ -102,6 +102,8 @@ def bright_places(
     ----------
     seen : (places, 3) float
         Radiance of places.
+    strict : (m,) float
+        How many times more errors count at the elements.
     """
     through = surfaces.transmittance
     if through is not None and (through.channels or through.refraction is not None):
@@ -119,9 +121,17 @@ def bright_places(
     bright = brightness(solution.reflected)
     exchange = balance.exchange
     each = np.diff(np.append(exchange.start, len(exchange.source)))
-    met = np.bincount(exchange.source, area[exchange.receiver].repeat(each) * exchange.factor, len(bright))
+
+    def met_by(weight: Floats) -> Floats:
+        total: Floats = np.bincount(
+            exchange.source, weight[exchange.receiver].repeat(each) * exchange.factor, len(bright)
+        )
+        return total
+
+    # What a room takes for bright may be dim beside the street.
+    met, counted = met_by(area), met_by(area * strict**2)
     own = balance.elements == balance.base
-    noise = np.where(own & (bright > BRIGHT), met * bright**2, 0.0)
+    noise = np.where(own & (counted * bright**2 > met * BRIGHT**2), counted * bright**2, 0.0)
     chosen = np.argsort(-noise, kind="stable")[:MOST_PLACES]
     chosen = np.sort(chosen[noise[chosen] > 0.0])
     if len(chosen) == 0:

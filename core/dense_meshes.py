@@ -68,7 +68,7 @@ SEED = 301
 
 
 def gather_sparsely(
-    places: Receivers, indirect_at: Callable[[Receivers], Gathered], longest: float, tolerance: float
+    places: Receivers, strict: Floats, indirect_at: Callable[[Receivers], Gathered], longest: float, tolerance: float
 ) -> Gathered:
     """Indirect light at receivers of faces, of which those on dense meshes are gathered in part.
 
@@ -76,6 +76,8 @@ def gather_sparsely(
     ----------
     places : Receivers
         With `of_corner`.
+    strict : (n,) float
+        How many times more errors count there.
     indirect_at : callable
         Gathers indirect light.
     longest : float, scene units
@@ -107,7 +109,7 @@ def gather_sparsely(
     square = np.where(known, excess[parents], 0.0).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
     usable = ~(gathered.hidden | gathered.touching)
     parents = np.where(some, number[parents], 0)
-    good = even & ~chosen[own] & (known.sum(axis=1) >= FEWEST_TOLD) & (square <= (FARTHER * allowed) ** 2)
+    good = even & ~chosen[own] & (known.sum(axis=1) >= FEWEST_TOLD) & (square <= (FARTHER * allowed / strict[own]) ** 2)
     good &= (usable[parents] | (weights == 0.0)).all(axis=1)
 
     which = own[good]

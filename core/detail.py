@@ -29,6 +29,7 @@ from .scene import Floats, Ints
 from .strips import extents
 from .subdivision import Faces, conforming_faces
 from .surfaces import Surfaces
+from .surroundings import Surroundings
 
 MOST_ROUNDS = 8
 """Rounds of splitting; each halves the faces at a shadow's border."""
@@ -78,19 +79,6 @@ class GatherAt(Protocol):
         """Gather light at all, but no indirect light at those of the mixture."""
 
 
-def light_up(
-    surfaces: Surfaces,
-    lit: NDArray[np.bool_],
-    faces: Faces,
-    share: Floats,
-    gather_at: Callable[[Receivers], Gathered],
-) -> Lit:
-    """Gather light at all corners of faces as they are, of which a share (faces,) counts."""
-    face, side = _wanted_sides(faces, surfaces, lit)
-    places = receivers(surfaces, faces, face, side)
-    return Lit(faces, face, side, places, gather_at(places), share)
-
-
 def light_up_in_detail(
     surfaces: Surfaces,
     lit: NDArray[np.bool_],
@@ -98,7 +86,8 @@ def light_up_in_detail(
     partly: NDArray[np.bool_],
     sizes: FaceSizes,
     tolerance: float,
-    light_up_first: Callable[[Faces, Floats], Lit],
+    surroundings: Surroundings,
+    light_up_first: Callable[[Faces, Floats, Floats], Lit],
     gather_at: GatherAt,
     is_hidden: IsHidden,
 ) -> tuple[Lit, PatchTree, bool]:
@@ -115,8 +104,10 @@ def light_up_in_detail(
     sizes : FaceSizes
     tolerance : float
         RMS error over the surface to be reached, relative to the mean.
+    surroundings : Surroundings
+        Of the tree: where errors count for more.
     light_up_first : callable
-        Gathers light at the corners of the patches, of which a share counts.
+        Gathers light at the corners of the patches, of which a share counts, on whose sides errors count for more.
     gather_at : callable
         The same at all vertices after them.
     is_hidden : callable
@@ -127,7 +118,7 @@ def light_up_in_detail(
     The faces and their light, the tree whose leaves they lie in, and whether there would be too many vertices if they
     were split as they should be.
     """
-    shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, tolerance, light_up_first, gather_at)
+    shown = _ShownFaces(surfaces, lit, tree.copy(), sizes.largest, tolerance, surroundings, light_up_first, gather_at)
 
     def bright_enough(lit: Lit) -> NDArray[np.bool_]:
         # Where a sealed room ends that is dark anyhow, nothing breaks off.
@@ -200,16 +191,18 @@ class _ShownFaces:
         tree: PatchTree,
         largest: float,
         tolerance: float,
-        light_up_first: Callable[[Faces, Floats], Lit],
+        surroundings: Surroundings,
+        light_up_first: Callable[[Faces, Floats, Floats], Lit],
         gather_at: GatherAt,
     ) -> None:
         self._surfaces, self._lit, self.tree, self._gather_at = surfaces, lit, tree, gather_at
+        self._surroundings = surroundings
         self._share_of_patch = counted_share(tree.areas(tree.patch), largest)
         self._changed_shells = np.zeros(len(lit), dtype=bool)
         faces = conforming_faces(surfaces, tree, ~self._changed_shells)
-        self._first = light_up_first(faces, self._share(faces))
+        self._first = light_up_first(faces, self._share(faces), surroundings.of_faces(faces, tree))
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
-        self._missed = _missed_light(surfaces, self._first, len(tree))
+        self._missed = _missed_light(surfaces, self._first, self._strict(self._first), len(tree))
         _, area, light = self._missed
         lit_of_all, self.mean_light = lit_area(area, light)
         self._goal = tolerance * self.mean_light, lit_of_all
@@ -227,7 +220,7 @@ class _ShownFaces:
 
     def missed_light(self) -> Floats:
         """As `_missed_light`, of all faces."""
-        missed = _missed_light(self._surfaces, self._changed, len(self.tree))
+        missed = _missed_light(self._surfaces, self._changed, self._strict(self._changed), len(self.tree))
         missed[:, : len(self._shell_of_node)] += np.where(self._changed_shells[self._shell_of_node], 0.0, self._missed)
         return missed
 
@@ -252,19 +245,24 @@ class _ShownFaces:
     def _updated(self, faces: Faces) -> Lit:
         """Gather at the receivers that there were not, and take the others from what is known."""
         known = self._changed
-        face, side = _wanted_sides(faces, self._surfaces, self._lit)
+        face, side = wanted_sides(faces, self._surfaces, self._lit)
         places = receivers(self._surfaces, faces, face, side)
         old = known.places
         place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
         missing = np.flatnonzero(old.codes[place] != places.codes)
         asked = places.taken(missing)
-        new = self._gather_at(asked, middles_in_between(known, self.tree, asked, self._goal))
+        new = self._gather_at(asked, middles_in_between(known, self._strict(known), self.tree, asked, self._goal))
         return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing), self._share(faces))
 
     def _share(self, faces: Faces) -> Floats:
         """Share of the area of faces that counts, (faces,)."""
         share: Floats = self._share_of_patch[self.tree.ancestors(len(self._share_of_patch))[faces.node]]
         return share
+
+    def _strict(self, known: Lit) -> Floats:
+        """How many times more errors count on face sides, (f,)."""
+        strict: Floats = self._surroundings.of_faces(known.faces, self.tree)[known.face, known.side]
+        return strict
 
     def all(self) -> Lit:
         """The faces and their light."""
@@ -290,7 +288,7 @@ def _nodes_with_crooked_cuts(
     return nodes[tree.sizes(nodes) >= 2.0 * sizes.smallest_cut]
 
 
-def _wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tuple[Ints, Ints]:
     """Faces and sides that get values, every front and the backs that light reaches, (f,)."""
     count = len(faces.triangle)
     shell = surfaces.shell_of_triangle[faces.triangle]
@@ -315,16 +313,16 @@ def counted_share_of_triangles(tree: PatchTree, largest: float) -> Floats:
     return share
 
 
-def _missed_light(surfaces: Surfaces, known: Lit, nodes: int) -> Floats:
+def _missed_light(surfaces: Surfaces, known: Lit, strict: Floats, nodes: int) -> Floats:
     """By node: squared error of interpolation times area, area, and light times area, (3, nodes).
 
-    All are means over the channels.
+    All are means over the channels. Errors count as many times more as `strict` says of the face sides, (f,).
     """
     faces, face = known.faces, known.face
     corners = faces.points[faces.corners[face]]
     irradiance = known.corner_irradiance()
     area = known.weights(surfaces)
-    square = interpolation_error(corners, known.neighbours, irradiance) ** 2
+    square = (strict * interpolation_error(corners, known.neighbours, irradiance)) ** 2
     summed = (square * area, area, area * irradiance.mean(axis=(1, 2)))
     by_node = [np.bincount(faces.node[face], weights=value, minlength=nodes) for value in summed]
     return np.stack(by_node).astype(np.float64)  # of no face at all, counts are whole numbers

@@ -89,11 +89,18 @@ class Lit:
         counted: Floats = np.where(np.all(emission == 0.0, axis=1), area, 0.0)[face]
         return counted
 
-    def noise(self, surfaces: Surfaces) -> float:
-        """Noise of the hemisphere rays over the surface, relative to the mean of what has light."""
+    def noise(self, surfaces: Surfaces, strict: Floats) -> float:
+        """Noise of the hemisphere rays over the surface, relative to the mean of what has light.
+
+        Parameters
+        ----------
+        strict : (faces, 2) float
+            How many times more it counts, on each side of the faces.
+        """
         weight = self.weights(surfaces)
         area, mean = lit_area(weight, weight * (self.corner_irradiance() @ LUMINANCE).mean(axis=1))
-        square = float(weight @ (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1))
+        noise = self.gathered.noise[self.places.of_corner] * strict[self.face, self.side][:, None]
+        square = float(weight @ (noise**2).mean(axis=1))
         return math.sqrt(square / area) / mean if mean > 0.0 else 0.0
 
     def _noise_of_channels(self) -> Floats:

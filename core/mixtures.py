@@ -43,13 +43,17 @@ MOST_ROWS = 8
 """Receivers that a mean is of at most, when all that it was interpolated from were themselves."""
 
 
-def middles_in_between(known: Lit, tree: PatchTree, places: Receivers, goal: tuple[float, float]) -> Mixture:
+def middles_in_between(
+    known: Lit, strict: Floats, tree: PatchTree, places: Receivers, goal: tuple[float, float]
+) -> Mixture:
     """Choose among the middles of edges those that get the mean of its ends.
 
     Parameters
     ----------
     known : Lit
         The faces before they were split.
+    strict : (f,) float
+        How many times more errors count on their sides.
     tree : PatchTree
         After.
     places : Receivers
@@ -57,7 +61,7 @@ def middles_in_between(known: Lit, tree: PatchTree, places: Receivers, goal: tup
     goal : (float, float)
         Light that all interpolation may miss, RMS over the channels, W m^-2 sr^-1, and the area over which.
     """
-    vertex, ends, missed, area = _halved_edges(known, tree)
+    vertex, ends, missed, area = _halved_edges(known, strict, tree)
     order = np.argsort(vertex, kind="stable")
     wanted = places.vertices()
     first, last = (np.searchsorted(vertex[order], wanted, side=side) for side in ("left", "right"))
@@ -82,7 +86,7 @@ def middles_in_between(known: Lit, tree: PatchTree, places: Receivers, goal: tup
     return Mixture(which, known.gathered, parents, np.full(parents.shape, 0.5))
 
 
-def _halved_edges(known: Lit, tree: PatchTree) -> tuple[Ints, Ints, Floats, Floats]:
+def _halved_edges(known: Lit, strict: Floats, tree: PatchTree) -> tuple[Ints, Ints, Floats, Floats]:
     """Edges of face sides that have a middle now: its vertex (e,), the receivers at its ends (e, 2), what
     interpolation of the indirect light misses on the face, (e,), and a third of the area of that, (e,)."""
     faces, face, gathered = known.faces, known.face, known.gathered
@@ -96,7 +100,7 @@ def _halved_edges(known: Lit, tree: PatchTree) -> tuple[Ints, Ints, Floats, Floa
     of_corner = of_corner[some]
     # Noise makes values differ, too, but what is gathered anew has as much of it.
     noise = (gathered.noise[of_corner] ** 2).mean(axis=1)
-    missed = np.sqrt(np.maximum(missed**2 - NOISE_OF_DIFFERENCE**2 * noise, 0.0))
+    missed = strict[some] * np.sqrt(np.maximum(missed**2 - NOISE_OF_DIFFERENCE**2 * noise, 0.0))
     vertices = tree.vertices(np.maximum(middles, 0), faces.node[face[some]])
     row, edge = np.nonzero(middles >= 0)
     ends = np.stack([of_corner[row, edge], of_corner[row, (edge + 1) % 3]], axis=1)

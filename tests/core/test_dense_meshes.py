@@ -44,7 +44,7 @@ def gathered_everywhere():
     """Bakes that gather indirect light at every vertex."""
     return (
         patch.object(
-            bake_module, "gather_sparsely", lambda places, indirect_at, longest, tolerance: indirect_at(places)
+            bake_module, "gather_sparsely", lambda places, strict, indirect_at, longest, tolerance: indirect_at(places)
         ),
         patch.object(detail, "middles_in_between", lambda *known: None),
     )

@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A dim room is lit as exactly as a bright one, whatever is bright beside it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from radiosity_bake.core.bake import bake
+from radiosity_bake.core.result import BakeResult
+from radiosity_bake.core.scene import Scene
+from radiosity_bake.core.settings import BakeSettings
+
+from bench.accuracy import irradiance_at_probes
+from bench.probes import area_uniform_probes
+from tests.core.building import cornell_box, moved
+
+GOOD = BakeSettings(quality="GOOD", keep_transport=False)
+AWAY = (100.0, 0.0, 0.0)
+DIMMER = 1.0 / 30.0
+
+
+def two_rooms(dimmer: float) -> Scene:
+    """Two Cornell boxes that do not see each other; the lamp of the second is so much dimmer."""
+    first, second = cornell_box(), moved(cornell_box(), by=AWAY)
+    others = tuple(replace(m, name=f"Other {m.name}", emission=dimmer * np.asarray(m.emission)) for m in second.meshes)
+    return replace(first, meshes=first.meshes + others)
+
+
+def vertices(result: BakeResult) -> tuple[int, int]:
+    """Of the first room and of the other."""
+    count, half = [len(mesh.vertices) for mesh in result.meshes], len(result.meshes) // 2
+    return sum(count[:half]), sum(count[half:])
+
+
+@pytest.fixture(scope="module")
+def both() -> BakeResult:
+    return bake(two_rooms(DIMMER), GOOD)
+
+
+@pytest.fixture(scope="module")
+def alone() -> int:
+    return sum(len(mesh.vertices) for mesh in bake(cornell_box(), GOOD).meshes)
+
+
+def test_a_dim_room_gets_about_as_many_vertices_as_alone(both: BakeResult, alone: int):
+    _, dim = vertices(both)
+    assert 0.75 * alone < dim < 1.25 * alone
+
+
+def test_a_dim_room_is_as_exact_as_a_bright_one(both: BakeResult):
+    room = cornell_box()
+    there = area_uniform_probes(room, 2000)
+    beside = replace(there, mesh=there.mesh + len(room.meshes), position=there.position + AWAY)
+    bright, dim = irradiance_at_probes(both, there), irradiance_at_probes(both, beside) / DIMMER
+    # Each of them is off by about one percent of the mean.
+    assert np.sqrt(np.mean((dim - bright) ** 2)) / bright.mean() < 0.02
+
+
+def test_rooms_that_are_equally_bright_are_treated_as_one_alone(alone: int):
+    assert sum(vertices(bake(two_rooms(1.0), GOOD))) < 2.2 * alone
