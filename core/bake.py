@@ -33,6 +33,7 @@ from .gather import (
     gather,
     gather_indirect,
     hidden_receivers,
+    rough_rays,
     with_direct,
 )
 from .interpolation import PlacesOnFaces, receivers_of_nodes
@@ -230,6 +231,10 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         into = per_receiver, finest, most_kept, gathering, mixture, bright
         return gather(transport, cells, radiance, emitters, places, *into)
 
+    def gather_roughly(places: Receivers) -> Gathered:
+        into = rough_rays(per_receiver), finest, 0, gathering, None, bright
+        return gather(transport, cells, radiance, emitters, places, *into)
+
     def indirect_at(places: Receivers) -> Gathered:
         return gather_indirect(transport, cells, radiance, places, per_receiver, finest, most_kept, gathering, bright)
 
@@ -259,6 +264,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
     def is_hidden(places: Receivers) -> NDArray[np.bool_]:
         return hidden_receivers(transport, places, finest, RAYS_TO_FIND_CUTS)
 
+    def stands_on(places: Receivers, of_corner: Ints, hidden: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        return (blocked_edges(rays, places, of_corner, hidden, finest, ~walls) < 1.0).all(axis=2)
+
     cuts, on_faces, diagonals, crowded = None, None, None, False
     walls = ~surfaces.closed[surfaces.shell_of_triangle]
     if settings.output == "ORIGINAL":
@@ -279,7 +287,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             surroundings,
             light_up_first,
             gather_at,
+            gather_roughly,
             is_hidden,
+            stands_on,
         )
         if shown.gathered.places.rays:
             of_cells = aside[cover.base_of(cells.element)]

@@ -252,7 +252,7 @@ def crooked_faces(
             expected.append(np.full(len(inside), step > 0.0))
             member.append(inside)
     weights, at = np.concatenate(tests), np.concatenate(member)
-    wrong = is_hidden(_within(faces, face[at], places, corners[at], weights)) != np.concatenate(expected)
+    wrong = is_hidden(within_faces(faces, face[at], places, corners[at], weights)) != np.concatenate(expected)
     return np.unique(face[at[wrong]])
 
 
@@ -264,7 +264,7 @@ def faces_with_feet(faces: Faces, places: Receivers, among: Ints, is_hidden: IsH
     for first in range(0, len(among), FACES_FOR_FEET):
         some = among[first : first + FACES_FOR_FEET]
         face = np.repeat(some, len(shares))
-        inside = _within(faces, face, places, places.of_corner[face], np.tile(shares, (len(some), 1)))
+        inside = within_faces(faces, face, places, places.of_corner[face], np.tile(shares, (len(some), 1)))
         found.append(some[is_hidden(inside).reshape(-1, len(shares)).any(axis=1)])
     return np.concatenate(found)
 
@@ -280,7 +280,7 @@ def _cut_weights(faces: Faces, face: Ints, edge: Ints, own: Ints, cuts: CutEdges
     return weights
 
 
-def _within(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights: Floats) -> Receivers:
+def within_faces(faces: Faces, face: Ints, places: Receivers, corners: Ints, weights: Floats) -> Receivers:
     """Receivers inside faces, at barycentric coordinates (m, 3)."""
 
     def mixed(values: Floats) -> Floats:

@@ -15,16 +15,17 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts
+from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts, within_faces
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error, lit_area
 from .gather import Gathered, Mixture
+from .geometry import lengths
 from .lit import Lit
 from .memory import Room
 from .met_places import bytes_of_tables
 from .mixtures import middles_in_between
 from .patches import PatchTree
-from .receivers import Receivers, receivers
+from .receivers import INWARD, Receivers, receivers
 from .scene import Floats, Ints
 from .strips import extents
 from .subdivision import Faces, conforming_faces
@@ -68,6 +69,18 @@ class FaceSizes:
     room: Room
 
 
+NEAR = 1.0
+"""Sizes of a face within which something is near it: its shadow may fall between the corners."""
+
+MISSED_BETWEEN = 0.1
+"""Share of the light shown in the middle of an edge that what is gathered there must differ by to count, and"""
+
+SURELY_MISSED = 3.0
+"""standard errors of that."""
+
+LEAST_WITH_MIDDLE = 4.0
+"""Smallest sizes of a face from which on its middle is asked: of those below, one split would be all."""
+
 RECEIVERS_OF_SPLIT = 2
 """More receivers that a split makes, about: at the middles of edges, which neighbours share, and to fit to these."""
 
@@ -89,7 +102,9 @@ def light_up_in_detail(
     surroundings: Surroundings,
     light_up_first: Callable[[Faces, Floats, Floats], Lit],
     gather_at: GatherAt,
+    gather_roughly: Callable[[Receivers], Gathered],
     is_hidden: IsHidden,
+    stands_on: Callable[[Receivers, Ints, NDArray[np.bool_]], NDArray[np.bool_]],
 ) -> tuple[Lit, PatchTree, bool]:
     """Gather light at the corners of a conforming mesh, and split its faces until the estimated error is small.
 
@@ -110,8 +125,12 @@ def light_up_in_detail(
         Gathers light at the corners of the patches, of which a share counts, on whose sides errors count for more.
     gather_at : callable
         The same at all vertices after them.
+    gather_roughly : callable
+        The same with few rays.
     is_hidden : callable
         Tells whether receivers are hidden: faces that another object hides in part are split where it has a corner.
+    stands_on : callable
+        Tells of faces (f, 3), whose corners are receivers some of which are hidden, on which edges a solid stands.
 
     Returns
     -------
@@ -150,16 +169,43 @@ def light_up_in_detail(
     def split_by_error(first_new: int) -> Ints:
         return _nodes_to_split(shown.missed_light(), shown.tree, sizes.smallest, tolerance)
 
+    found_between = np.zeros(0)
+
+    def split_by_middles(first_new: int) -> Ints:
+        nonlocal found_between
+        found = np.zeros(len(shown.tree))
+        found[: len(found_between)] = found_between
+        for lit, chosen in shown.parts():
+            node = lit.faces.node
+            wanted = chosen & (node >= first_new) & (shown.tree.sizes(node) >= LEAST_WITH_MIDDLE * sizes.smallest)
+            found += _missed_between(surfaces, lit, shown.strict(lit), wanted, len(found), gather_roughly)
+        missed = shown.missed_light()
+        # What has been split has no area any more.
+        found_between = np.where(missed[1] > 0.0, found, 0.0)
+        missed[0] = found_between
+        return _nodes_to_split(missed, shown.tree, sizes.smallest, tolerance)
+
+    looked_at = 0
+
     def split_by_outline(first_new: int) -> Ints:
-        nodes = [np.zeros(0, dtype=np.int64)]
+        nonlocal looked_at
+        nodes, looked_at, first_new = [np.zeros(0, dtype=np.int64)], len(shown.tree), looked_at
         for lit, chosen in shown.parts():
             faces = bright_enough(lit) & chosen & (lit.faces.node >= first_new)
             if faces.any():
                 nodes.append(_nodes_with_crooked_cuts(lit, faces, shown.tree, sizes, is_hidden))
-        return np.sort(np.concatenate(nodes))
+                nodes.append(_nodes_under_solids(lit, faces, shown.tree, sizes, stands_on))
+        return np.unique(np.concatenate(nodes))
 
     full = False
-    for nodes_to_split in (split_on_strips, split_by_feet, split_by_error, split_by_outline):
+    for nodes_to_split in (
+        split_on_strips,
+        split_by_feet,
+        split_by_error,
+        split_by_outline,
+        split_by_middles,
+        split_by_outline,
+    ):
         first_new = 0
         for _ in range(MOST_ROUNDS):
             nodes = nodes_to_split(first_new)
@@ -202,7 +248,7 @@ class _ShownFaces:
         faces = conforming_faces(surfaces, tree, ~self._changed_shells)
         self._first = light_up_first(faces, self._share(faces), surroundings.of_faces(faces, tree))
         self._changed = self._first.part(np.zeros(len(faces.triangle), dtype=bool))
-        self._missed = _missed_light(surfaces, self._first, self._strict(self._first), len(tree))
+        self._missed = _missed_light(surfaces, self._first, self.strict(self._first), len(tree))
         _, area, light = self._missed
         lit_of_all, self.mean_light = lit_area(area, light)
         self._goal = tolerance * self.mean_light, lit_of_all
@@ -220,7 +266,7 @@ class _ShownFaces:
 
     def missed_light(self) -> Floats:
         """As `_missed_light`, of all faces."""
-        missed = _missed_light(self._surfaces, self._changed, self._strict(self._changed), len(self.tree))
+        missed = _missed_light(self._surfaces, self._changed, self.strict(self._changed), len(self.tree))
         missed[:, : len(self._shell_of_node)] += np.where(self._changed_shells[self._shell_of_node], 0.0, self._missed)
         return missed
 
@@ -251,7 +297,7 @@ class _ShownFaces:
         place = np.minimum(np.searchsorted(old.codes, places.codes), len(old.codes) - 1)
         missing = np.flatnonzero(old.codes[place] != places.codes)
         asked = places.taken(missing)
-        new = self._gather_at(asked, middles_in_between(known, self._strict(known), self.tree, asked, self._goal))
+        new = self._gather_at(asked, middles_in_between(known, self.strict(known), self.tree, asked, self._goal))
         return Lit(faces, face, side, places, known.gathered.with_more(place, new, missing), self._share(faces))
 
     def _share(self, faces: Faces) -> Floats:
@@ -259,7 +305,7 @@ class _ShownFaces:
         share: Floats = self._share_of_patch[self.tree.ancestors(len(self._share_of_patch))[faces.node]]
         return share
 
-    def _strict(self, known: Lit) -> Floats:
+    def strict(self, known: Lit) -> Floats:
         """How many times more errors count on face sides, (f,)."""
         strict: Floats = self._surroundings.of_faces(known.faces, self.tree)[known.face, known.side]
         return strict
@@ -286,6 +332,22 @@ def _nodes_with_crooked_cuts(
     cuts = find_cuts(known.faces, known.places, hidden, is_hidden, ROUGH_SEARCHES, faces)
     nodes = np.unique(known.faces.node[crooked_faces(known.faces, known.places, hidden, cuts, is_hidden)])
     return nodes[tree.sizes(nodes) >= 2.0 * sizes.smallest_cut]
+
+
+def _nodes_under_solids(
+    known: Lit,
+    faces: NDArray[np.bool_],
+    tree: PatchTree,
+    sizes: FaceSizes,
+    stands_on: Callable[[Receivers, Ints, NDArray[np.bool_]], NDArray[np.bool_]],
+) -> Ints:
+    """Leaves that can be split and that a solid stands on between seen corners, among those some `faces` lie in."""
+    node, hidden = known.faces.node, known.gathered.hidden
+    of_corner = known.places.of_corner[: len(node)]
+    seen = ~hidden[of_corner].any(axis=1)
+    asked = np.flatnonzero(faces & seen & (tree.sizes(node) >= 2.0 * sizes.smallest_cut))
+    nodes: Ints = np.unique(node[asked[stands_on(known.places, of_corner[asked], hidden).any(axis=1)]])
+    return nodes
 
 
 def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tuple[Ints, Ints]:
@@ -326,6 +388,52 @@ def _missed_light(surfaces: Surfaces, known: Lit, strict: Floats, nodes: int) ->
     summed = (square * area, area, area * irradiance.mean(axis=(1, 2)))
     by_node = [np.bincount(faces.node[face], weights=value, minlength=nodes) for value in summed]
     return np.stack(by_node).astype(np.float64)  # of no face at all, counts are whole numbers
+
+
+def _missed_between(
+    surfaces: Surfaces,
+    known: Lit,
+    strict: Floats,
+    faces: NDArray[np.bool_],
+    nodes: int,
+    gather_roughly: Callable[[Receivers], Gathered],
+) -> Floats:
+    """By node: squared difference between the light in the middle of the longest edge and what is shown there, times
+    area, (nodes,); of those `faces` (f,) that something is near to. Nothing where rays are too few to tell.
+
+    Differences count as many times as `strict` says of the face sides, (f,).
+    """
+    of_corner, gathered = known.places.of_corner, known.gathered
+    corners = known.faces.points[known.faces.corners[known.face]]
+    along = lengths(np.roll(corners, -1, axis=1) - corners)
+    size = along.max(axis=1)
+    near = gathered.free[of_corner].min(axis=1) < NEAR * size
+    near &= ~(gathered.hidden[of_corner] | gathered.touching[of_corner]).any(axis=1)
+    weight = known.weights(surfaces)
+    row = np.flatnonzero(faces[known.face] & near & (weight > 0.0))
+    if len(row) == 0:
+        return np.zeros(nodes)
+    edge = along[row].argmax(axis=1)
+    start, end = of_corner[row, edge], of_corner[row, (edge + 1) % 3]
+    _, first, at, beside = np.unique(
+        np.minimum(start, end) << 32 | np.maximum(start, end),
+        return_index=True,
+        return_inverse=True,
+        return_counts=True,
+    )
+    # An edge of one face alone may lie in the plane of the next wall.
+    aside = np.where(beside == 1, INWARD, 0.0)
+    weights = np.empty((len(first), 3))
+    each, asked = np.arange(len(first)), row[first]
+    for step, share in ((0, (1.0 - aside) / 2.0), (1, (1.0 - aside) / 2.0), (2, aside)):
+        weights[each, (edge[first] + step) % 3] = share
+    middles = gather_roughly(within_faces(known.faces, known.face[asked], known.places, of_corner[asked], weights))
+    shown = np.einsum("ek,ekx->ex", weights, known.corner_irradiance()[asked])
+    light = np.where(middles.hidden[:, None], 0.0, middles.irradiance)
+    missed = np.sqrt(((shown - light) ** 2).mean(axis=1))
+    told = missed > np.maximum(MISSED_BETWEEN * shown.mean(axis=1), SURELY_MISSED * middles.noise)
+    square = np.where(told, missed**2, 0.0)[at] * strict[row] ** 2 * weight[row]
+    return np.bincount(known.faces.node[known.face[row]], weights=square, minlength=nodes)
 
 
 def _nodes_to_split(missed_light: Floats, tree: PatchTree, smallest: float, tolerance: float) -> Ints:

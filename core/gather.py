@@ -43,6 +43,9 @@ NOISY = 2.0**0.25
 FASTEST_FALL = 0.75
 """Noise falls as a power of the rays: 1/2 where they were random, this for an even pattern and edges."""
 
+ROUGH, FEWEST_ROUGH = 8, 32
+"""Times fewer rays that only look for what is far off, and how many there are over the hemisphere at least."""
+
 MORE_RECEIVERS = 8
 """Times more receivers than patches have corners that there shall be room for."""
 
@@ -373,6 +376,12 @@ def enough_rays(counts: GatherRays, first: int, noise: float, receivers: int, mo
     while doublings and counts.hemisphere << doublings > most:
         doublings -= 1
     return replace(counts, hemisphere=counts.hemisphere << doublings) if doublings else counts
+
+
+def rough_rays(counts: GatherRays) -> GatherRays:
+    """Few rays, to find out where light is far from what is expected."""
+    few = {name: max(getattr(counts, name) // ROUGH, 8) for name in ("shadow", "penumbra", "deep")}
+    return replace(counts, hemisphere=max(counts.hemisphere // ROUGH, FEWEST_ROUGH), **few)
 
 
 def look_again(workers: Workers, radiance: Radiance, gathered: Gathered) -> Gathered:
