@@ -14,6 +14,7 @@ from radiosity_bake.core.scene import Scene
 
 from .varied_buildings import attic, bedroom, cave, courtyard, doors, hangar, rotunda, staircase, window_room
 from .varied_lamps import flush_lamps, low_lamp, narrow_gap, panel_hall, shaded_lamp
+from .varied_places import greenhouse, shop, street, tent, theatre, tunnel
 from .varied_things import chequered, matchbox, smooth_bodies, thin_things, tilted, touching_blocks
 
 VARIED_SCENES: dict[str, Callable[[], Scene]] = {
@@ -39,5 +40,11 @@ VARIED_SCENES: dict[str, Callable[[], Scene]] = {
         hangar,
         window_room,
         courtyard,
+        shop,
+        tunnel,
+        tent,
+        greenhouse,
+        theatre,
+        street,
     )
 }
