@@ -15,6 +15,7 @@ from .sampling import sequence, triangle_weights
 from .scene import Floats, Ints
 from .subdivision import Faces
 from .surfaces import Surfaces
+from .terminator import rises
 
 VERTICES_FOR_A_CHECK = 32
 """Vertices for which there is one place: what checking costs of the gather, at most."""
@@ -87,13 +88,17 @@ def receivers_of_checks(surfaces: Surfaces, faces: Faces, face: Ints, checks: Ch
     side = (checks.row >= len(faces.triangle)).astype(np.int64)
     lift = side_normals(surfaces.normals[chosen.triangle], side)
     shading = np.einsum("kc,kcx->kx", checks.weights, chosen.corner_normals(surfaces))
+    mesh = surfaces.mesh_of_triangle[chosen.triangle]
+    weights = np.einsum("kc,kcx->kx", checks.weights, chosen.weights)
     return Receivers(
         points=np.einsum("kc,kcx->kx", checks.weights, chosen.points[chosen.corners]),
         normals=normalized(side_normals(shading, side)),
         lift=lift,
+        rise=rises(surfaces, chosen.triangle, side, weights),
+        grazing=surfaces.grazing[mesh],
         codes=np.arange(len(side)),
         inward=np.zeros((len(side), 3)),
         sizes=largest_edges(chosen.points, chosen.corners),
-        mesh=surfaces.mesh_of_triangle[chosen.triangle],
+        mesh=mesh,
         of_corner=np.zeros((0, 3), dtype=np.int64),
     )

@@ -26,6 +26,7 @@ from .sampling import LATTICE_ERROR, Singles, hashed, ray_counts, sequence, tria
 from .scene import LUMINANCE as LUMINANCE
 from .scene import UNLINKED, Floats, Ints, Lamp, LightLinking, SunLamp
 from .surfaces import Surfaces
+from .terminator import arriving
 from .visibility import OFFSET, RayScene, spread_of_rays
 
 FEW_EMITTERS = 16
@@ -267,10 +268,10 @@ def _direct_of_each(
     factor = piece_factor(pieces, axis)
     leaning = np.zeros(len(row), dtype=bool)
     if at.leans:
-        # What a smooth shading normal sees below its face is dark.
+        # What a smooth shading normal sees below its face is dark, unless the face stands for a surface above it.
         above = heights_of(pieces, up.take(row, axis=1))
-        leaning = np.minimum.reduce(above) < 0.0
-        factor[np.maximum.reduce(above) <= 0.0] = 0.0
+        leaning = (np.minimum.reduce(above) < 0.0) | at.bulges[row]
+        factor[(np.maximum.reduce(above) <= 0.0) & ~at.bulges[row]] = 0.0
     light = factor * (emitters.radiance @ LUMINANCE)[emitter]
     total = np.bincount(row, weights=light, minlength=count)
     rays_of = ray_counts(shadow_rays * light / np.maximum(total, np.finfo(np.float64).tiny)[row])
@@ -287,9 +288,10 @@ def _direct_of_each(
         same = same[np.argsort(pattern[row[same]], kind="stable")]
         receiver = row[same]
         toward = _ways(flat.take(same, axis=2), pattern[receiver], int(rays_each), seed)
-        seen = rays.visible(origins.take(receiver, axis=0), toward)
-        low = np.flatnonzero(leaning[same])
-        seen[low] *= np.einsum("prx,px->pr", toward[low], lift[receiver[low]]) > -OFFSET
+        if leaning[same].any():
+            seen = arriving(rays, at, receiver, origins, toward)
+        else:
+            seen = rays.visible(origins.take(receiver, axis=0), toward)
         visible[same] = _visible_share(seen, toward, normals, receiver)
         spread[same] = spread_of_rays(seen, visible[same])
     variance = LATTICE_ERROR**2 * spread * np.maximum(rays_of, 1) ** -1.5 * light**2

@@ -21,6 +21,7 @@ from .geometry import order_along_curve
 from .lit_points import LitPoints
 from .sampling import GOLDEN, LATTICE_ERROR, Singles, frames, hashed, ray_counts
 from .scene import AreaLamp, Cone, Falloff, Floats, Ints, Lamp, PointLamp, Profile, SunLamp
+from .terminator import arriving
 from .visibility import OFFSET, RayScene, spread_of_rays
 
 FEW_LAMPS = 32
@@ -118,9 +119,9 @@ def lamp_light(
         return DirectLight.stacked([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     shifts = hashed(at.keys, 2, seed)
     whole = unoccluded_of_all(lamps, at.points, at.normals)
-    for arriving, lamp in zip(whole, lamps, strict=True):
+    for of_lamp, lamp in zip(whole, lamps, strict=True):
         if lamp.linking.receivers is not None:
-            arriving[~np.isin(at.mesh, list(lamp.linking.receivers))] = 0.0
+            of_lamp[~np.isin(at.mesh, list(lamp.linking.receivers))] = 0.0
     bright = whole * luminance[:, None]
     total = np.maximum(bright.sum(axis=0), DARK)
     entries, variance = [DirectLight.none(count)], np.zeros(count)
@@ -223,8 +224,7 @@ def _light_of_drawn(
     ways = _raised(ways, there.normals)
     origins, back = rays.lifted(there.points, there.lift)
     local = ways * rays.scale + back + OFFSET * facing
-    above = np.einsum("rx,rx->r", local, there.lift) > -OFFSET
-    visible[ask] = above * rays.visible(origins, local.astype(np.float32)[:, None])[:, 0]
+    visible[ask] = arriving(rays, there, np.arange(len(ask)), origins, local.astype(np.float32)[:, None])[:, 0]
     for which in np.unique(drawn.lamp[~simple[drawn.lamp]]):
         lamp = lamps[which]
         some = np.flatnonzero(drawn.lamp == which) if lamp.shadow else np.zeros(0, dtype=np.int64)
@@ -524,12 +524,11 @@ def _visible_share(lamp: Lamp, rays: RayScene, at: LitPoints, ways: Floats) -> t
         local = ways * rays.scale + (back + OFFSET * facing)[:, None]
     toward: Singles = local.astype(np.float32)
     kernel = _kernel(lamp, facing, at.normals, ways)
-    # What a smooth shading normal sees below its face is dark.
-    above = np.einsum("nrx,nx->nr", local, at.lift) > -OFFSET
+    above = (np.einsum("nrx,nx->nr", local, at.lift) > -OFFSET) | at.bulges[:, None]
     ask = np.flatnonzero((above & (kernel > 0.0)).any(axis=1))
-    arrives = rays.visible(origins[ask], toward[ask])
+    arrives = arriving(rays, at, ask, origins, toward[ask], isinstance(lamp, SunLamp))
     seen = above.astype(arrives.dtype)
-    seen[ask] *= arrives
+    seen[ask] = arrives
     tried = kernel.sum(axis=1)
     # A few places may all miss what little is above the horizon: then each counts alike.
     kernel[tried <= 0.0] = 1.0

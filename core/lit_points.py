@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .scene import Floats, Ints
 
@@ -21,6 +23,10 @@ class LitPoints:
         Where, and the axis of the hemisphere that light comes from.
     lift : (n, 3) float
         The side of the true surface that rays start on: `normals` themselves where none of them leans over its face.
+    rise : (n, 3) float, scene units
+        How far the curved surface that a smooth face stands for lies above it, see `core.terminator`.
+    grazing : (n,) float
+        Cosine to the face below which light is grazing.
     keys : (n,) int
         Numbers that choose their sampling patterns.
     mesh : (n,) int
@@ -30,6 +36,8 @@ class LitPoints:
     points: Floats
     normals: Floats
     lift: Floats
+    rise: Floats
+    grazing: Floats
     keys: Ints
     mesh: Ints
 
@@ -38,7 +46,8 @@ class LitPoints:
         """Points of flat surfaces, each with a pattern of its own and on the first mesh unless told otherwise."""
         count = len(points)
         own = np.arange(count) if keys is None else keys
-        return LitPoints(points, normals, normals, own, np.zeros(count, dtype=np.int64) if mesh is None else mesh)
+        on_mesh = np.zeros(count, dtype=np.int64) if mesh is None else mesh
+        return LitPoints(points, normals, normals, np.zeros((count, 3)), np.ones(count), own, on_mesh)
 
     def __len__(self) -> int:
         return len(self.points)
@@ -48,8 +57,15 @@ class LitPoints:
         """Whether any shading normal may lean over its face."""
         return self.lift is not self.normals
 
+    @cached_property
+    def bulges(self) -> NDArray[np.bool_]:
+        """Points that a curved surface is meant to lie above, (n,)."""
+        found: NDArray[np.bool_] = self.rise.any(axis=1)
+        return found
+
     def taken(self, which: Ints | slice) -> LitPoints:
         """Some of them."""
         normals = self.normals[which]
         lift = self.lift[which] if self.leans else normals
-        return LitPoints(self.points[which], normals, lift, self.keys[which], self.mesh[which])
+        of_face = self.rise[which], self.grazing[which]
+        return LitPoints(self.points[which], normals, lift, *of_face, self.keys[which], self.mesh[which])

@@ -15,6 +15,7 @@ from .lit_points import LitPoints
 from .scene import Floats, Ints
 from .subdivision import Faces
 from .surfaces import Surfaces
+from .terminator import rises
 
 NORMAL_CELLS = 1024
 """Shading normals closer than about 1/1024 count as one: corners of a smooth or flat surface share a value, corners on
@@ -40,6 +41,10 @@ class Receivers:
     ----------
     points, normals, lift : (n, 3) float
         Position, shading normal (the axis of the hemisphere) and unit normal of the surface itself.
+    rise : (n, 3) float, scene units
+        How far the curved surface that smooth faces stand for lies above them, and
+    grazing : (n,) float
+        cosine below which light is grazing there, see `core.terminator`.
     codes : (n,) int, ascending
         Numbers that tell the place, normal and side: equal for the same receiver of another subdivision.
     inward : (n, 3) float, scene units
@@ -55,6 +60,8 @@ class Receivers:
     points: Floats
     normals: Floats
     lift: Floats
+    rise: Floats
+    grazing: Floats
     codes: Ints
     inward: Floats
     sizes: Floats
@@ -67,8 +74,9 @@ class Receivers:
 
     def lit_points(self, which: Ints | slice) -> LitPoints:
         """Some of the receivers as points that get light, all with the same sampling pattern."""
-        points, mesh = self.points[which], self.mesh[which]
-        return LitPoints(points, self.normals[which], self.lift[which], np.zeros(len(mesh), dtype=np.int64), mesh)
+        mesh = self.mesh[which]
+        of_face = self.normals[which], self.lift[which], self.rise[which], self.grazing[which]
+        return LitPoints(self.points[which], *of_face, np.zeros(len(mesh), dtype=np.int64), mesh)
 
     def taken(self, which: Ints) -> Receivers:
         """Some of the receivers, without faces."""
@@ -120,6 +128,10 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
     del shading
     geometric = side_normals(surfaces.normals[faces.triangle[face_of_side]], side)
     lift = normalized(mean(np.repeat(geometric, 3, axis=0)))
+    triangle = faces.triangle[face_of_side]
+    corner_sides, of_corner = np.repeat(side, 3), np.repeat(triangle, 3)
+    rise = mean(rises(surfaces, of_corner, corner_sides, faces.weights[face_of_side].reshape(-1, 3)))
+    mesh = surfaces.mesh_of_triangle[triangle][first // 3]
     position = points[corners.ravel()[first]]
     at = points[corners]
     toward = (((at[:, 0] + at[:, 1] + at[:, 2]) / 3.0)[:, None] - at).reshape(-1, 3)
@@ -130,10 +142,12 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         position + INWARD * inward,
         normals,
         lift,
+        rise,
+        surfaces.grazing[mesh],
         codes,
         INWARD * inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
-        surfaces.mesh_of_triangle[faces.triangle[face_of_side]][first // 3],
+        mesh,
         group.reshape(-1, 3),
     )
 

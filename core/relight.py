@@ -139,6 +139,7 @@ def shape_of(mesh: SurfaceMesh) -> bytes:
         np.zeros(0, dtype=bool) if mark is None or not mark.any() else mark for mark in (mesh.clear, mesh.front_only)
     ]
     digest.update(_linking_code(mesh.linking))
+    digest.update(np.float64(mesh.grazing).tobytes())
     for array in (mesh.vertices, mesh.triangles, mesh.corner_normals, flags, *marks, *_transmittance_of(mesh)):
         digest.update(repr((array.shape, array.dtype.str)).encode())
         digest.update(np.ascontiguousarray(array).data)

@@ -58,6 +58,9 @@ class LightLinking:
 UNLINKED = LightLinking()
 """Light for all meshes, which all of them hide."""
 
+GRAZING = 0.1
+"""Cycles' default."""
+
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMesh:
@@ -103,6 +106,9 @@ class SurfaceMesh:
         Triangles whose back does not emit.
     linking : LightLinking
         Of the light that it emits.
+    grazing : float, 0..1
+        Cosine between a smooth face and light of lamps below which it is grazing, so that shadow rays start above the
+        face (Cycles' geometry offset of the shadow terminator); 0: nowhere.
     own_reflectance : (t, 3) float, 0..1, or None
         Diffuse albedo, by which its own colours show the light. None where all that it sends on is diffuse; gloss is
         sent on as well, and not shown, as it looks different from everywhere.
@@ -129,6 +135,7 @@ class SurfaceMesh:
     refraction: Floats | None = None
     front_only: NDArray[np.bool_] | None = None
     linking: LightLinking = UNLINKED
+    grazing: float = GRAZING
     own_reflectance: Floats | None = None
     own_reflectance_texture: Texture | None = None
 

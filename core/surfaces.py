@@ -39,6 +39,9 @@ float32 has the plane of larger ones off by as much as rays start off it, so tha
 LARGEST_SQUARE = 4096.0
 """The same for all triangles: float32 tells places on larger ones apart no better than what stands there is large."""
 
+TURNS = 1e-5
+"""Difference between the normals of a triangle's corners from which on it is shaded as a curved surface."""
+
 HAIR = 8e-7
 """How much solids are made smaller for rays, in units of the extent that the scene would have if it ended with them: 13
 steps between neighbouring float32, and less than rays start off their surface."""
@@ -86,6 +89,8 @@ class Surfaces:
         Whether only the front emits.
     linking : tuple of LightLinking
         Of the emission of each mesh.
+    grazing : (meshes,) float
+        Cosine below which light is grazing on each.
     extent : float
         Largest edge of the bounding box.
     world : (3,) or (cells, 3) float
@@ -122,6 +127,7 @@ class Surfaces:
     transmittance: Transmittance | None
     front_only: NDArray[np.bool_]
     linking: tuple[LightLinking, ...]
+    grazing: Floats
     extent: float
     world: Floats
     lamps: tuple[Lamp, ...]
@@ -173,6 +179,13 @@ class Surfaces:
     def _solid(self) -> NDArray[np.bool_]:
         """Whether each shell has an inside, which its normals look away from, (shells,)."""
         return self.closed & (signed_volumes(self) > 0.0)
+
+    @cached_property
+    def stands_for_curved(self) -> NDArray[np.bool_]:
+        """Triangles that are shaded smooth and turn, in place of a curved surface, (t,)."""
+        turns = (np.abs(self.corner_normals - self.corner_normals[:, :1]) > TURNS).any(axis=(1, 2))
+        found: NDArray[np.bool_] = turns & (self.grazing[self.mesh_of_triangle] > 0.0)
+        return found
 
     def _back_to_back(self) -> NDArray[np.bool_]:
         """Triangles of sheets in one plane with others, of another sheet, that look the other way, (t,).
@@ -306,6 +319,7 @@ def join(scene: Scene) -> Surfaces:
         transmittance=transmittance_of(scene.meshes, kept),
         front_only=_marked([mesh.front_only for mesh in scene.meshes], kept),
         linking=tuple(mesh.linking for mesh in scene.meshes),
+        grazing=np.array([mesh.grazing for mesh in scene.meshes], dtype=np.float64),
         extent=extent,
         warnings=tuple(warnings),
         **_colours(scene, kept),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..core.scene import Floats
+from ..core.scene import GRAZING, Floats
 
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
@@ -80,6 +80,8 @@ class Role:
         Whether it can be baked.
     reflectance : (3,) float or None
         In place of that of its materials.
+    grazing : float
+        As `SurfaceMesh` has it.
     """
 
     seen: bool
@@ -87,6 +89,7 @@ class Role:
     lights: bool
     receives: bool
     reflectance: Floats | None
+    grazing: float
 
 
 def role_of(objects: Sequence[bpy.types.Object]) -> Role:
@@ -101,4 +104,14 @@ def role_of(objects: Sequence[bpy.types.Object]) -> Role:
         lights=seen and all(of_object.emits for of_object in settings),
         receives=all(of_object.receives for of_object in settings),
         reflectance=None if overriding is None else np.array(overriding.reflectance, dtype=np.float64),
+        grazing=_grazing(objects[0]),
     )
+
+
+def _grazing(obj: bpy.types.Object) -> float:
+    """Return the geometry offset of the shadow terminator, which versions of Blender have in different places."""
+    cycles = getattr(obj, "cycles", None)
+    for owner in (obj, cycles):
+        if hasattr(owner, "shadow_terminator_geometry_offset"):
+            return float(owner.shadow_terminator_geometry_offset)
+    return GRAZING

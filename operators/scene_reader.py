@@ -374,6 +374,7 @@ class SceneReader:
                 baked=owner is not None,
                 seen=role.seen,
                 shadow=role.shadow,
+                grazing=role.grazing,
             )
         )
 

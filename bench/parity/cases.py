@@ -46,6 +46,8 @@ class Case:
     ours : callable or None
         Takes the objects once Cycles has baked them, bakes them in a way of its own and returns (c, 3) the colours of
         each; None bakes the scene as it is.
+    faces : bool
+        Whether the picture is judged too, as what counts lies between the vertices.
     note : str
         What there is to know of the row's difference.
     """
@@ -58,6 +60,7 @@ class Case:
     quantity: str
     settings: dict[str, Any]
     ours: Callable[[list[Any]], list[Any]] | None
+    faces: bool
     note: str
 
 
@@ -70,6 +73,7 @@ def case(
     samples: int = SAMPLES,
     quantity: str = "Irradiance",
     ours: Callable[[list[Any]], list[Any]] | None = None,
+    faces: bool = False,
     note: str = "",
     **settings: Any,
 ) -> Callable[[Callable[[], list[Any]]], Callable[[], list[Any]]]:
@@ -79,7 +83,9 @@ def case(
         topic = build.__module__.rpartition(".")[2]
         if build.__name__ in _cases:
             raise ValueError(f"There are two cases {build.__name__}")
-        _cases[build.__name__] = Case(build.__name__, topic, title, build, samples, quantity, settings, ours, note)
+        _cases[build.__name__] = Case(
+            build.__name__, topic, title, build, samples, quantity, settings, ours, faces, note
+        )
         return build
 
     return listed

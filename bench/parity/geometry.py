@@ -259,3 +259,24 @@ def bent_faces() -> list[Any]:
     stage.world((0.5, 0.6, 0.8), 0.3)
     stage.camera((1.8, -1.8, 1.8), (0.0, 0.0, 0.0), 40.0)
     return [ground]
+
+
+@case(
+    "Smooth shading of few faces",
+    faces=True,
+    note="both are dark, as what a smooth face sends on is here the light on its flat triangles: a pale pillar's top "
+    "would light the ball otherwise, by 6% of the row",
+)
+def smooth_faces() -> list[Any]:
+    """A ball of 8 by 6 faces and a pillar of 8 under a low sun, which shade themselves across their faces."""
+    paint = stage.paint(colour=(0.05, 0.05, 0.05))
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=8, ring_count=6, radius=1.0, location=(0.0, 0.0, 1.1))
+    ball = bpy.context.object
+    bpy.ops.mesh.primitive_cylinder_add(vertices=8, radius=1.0, depth=1.6, location=(0.0, 0.0, -1.0))
+    for thing in (ball, bpy.context.object):
+        thing.data.materials.append(paint)
+        thing.data.shade_smooth()
+    stage.lamp("SUN", turn=(1.233, 0.0, 1.212), angle=0.01)
+    stage.world((0.5, 0.6, 0.8), 0.1)
+    stage.camera((0.0, -6.0, 0.8), (0.0, 0.0, 0.0), 50.0)
+    return [ball, bpy.context.object]

@@ -45,6 +45,9 @@ def measure(case: Case, picture: Path) -> dict[str, Any]:
         pictures.write(picture, seen, shown)
     backs = case.quantity.endswith("Back")
     found = compared(things, ours, *theirs, backs)
+    if case.faces:
+        one, other = pictures.exposed(seen, shown)
+        found["picture_difference"] = round(root_mean_square(one - other), 5)
     return {
         "topic": case.topic,
         "title": case.title,

@@ -71,7 +71,7 @@ def met(row: Row) -> bool:
     if "failed" in row:
         return False
     if "difference" in row:
-        return bool(row["difference"] <= ALLOWED + row["noise"])
+        return bool(row["difference"] <= ALLOWED + row["noise"] and row.get("picture_difference", 0.0) <= ALLOWED)
     kept = not row.get("left") and not row.get("file_changed", False)
     if row["topic"] == FILES and "said" in row:
         return kept
@@ -179,6 +179,11 @@ def section(title: str, rows: dict[str, Row]) -> Lines:
         if not met(row):
             told = [row["failed"]] if "failed" in row else row["warnings"]
             lines += [f"- **{row['title']}** is not met" + (f": {'; '.join(told)}." if told else "."), ""]
+        if "picture_difference" in row:
+            told = (
+                f"what counts lies between the vertices; the pictures differ by {percent(row['picture_difference'])} of"
+            )
+            lines += [*paragraph(f"- {row['title']}: {told} what can be shown, at most {ALLOWED:.0%} is met."), ""]
         if "note" in row:
             lines += [*paragraph(f"- {row['title']}: {row['note']}"), ""]
     return lines + pictures_of(rows)

@@ -25,7 +25,8 @@ def floor_and_wall(height=0.0, length=3.0):
 
 def floor_places():
     up, zero = np.tile(UP, (4, 1)), np.zeros((4, 3))
-    return Receivers(POINTS, up, up, np.arange(4), zero, np.ones(4), 0 * np.arange(4), TRIANGLES)
+    one, number = np.ones(4), np.arange(4)
+    return Receivers(POINTS, up, up, zero, one, number, zero, one, 0 * number, TRIANGLES)
 
 
 def floor_faces():

@@ -41,6 +41,13 @@ def test_a_row_is_met_within_two_percent_and_the_noise(difference, noise, expect
     assert met({**CASE, "difference": difference, "noise": noise}) == expected
 
 
+@pytest.mark.parametrize(("picture_difference", "expected"), [(0.02, True), (0.03, False)])
+def test_a_row_whose_picture_counts_is_met_within_two_percent_of_that_too(picture_difference, expected):
+    row = {**CASE, "picture_difference": picture_difference}
+    assert met(row) == expected
+    assert f"differ by {picture_difference:.2%}" in page({"sun": row})
+
+
 @pytest.mark.parametrize(
     "change",
     [
