@@ -325,7 +325,7 @@ def left_out_of(tree: bpy.types.NodeTree) -> list[str]:
 def _left_out(node: bpy.types.Node) -> Iterator[str]:
     linked = {socket.identifier for socket in node.outputs if socket.is_linked}
     if linked and (getattr(node, "from_instancer", False) or getattr(node, "attribute_type", "") == "INSTANCER"):
-        yield f"{node.bl_label} asks for the instancer, which is left out"
+        yield f"{node.bl_label} asks for the instancer, which is left out; the object's own counts"
     if linked and node.type == "AMBIENT_OCCLUSION":
         yield "Ambient Occlusion sees the object alone"
     if linked.intersection({"TEX_COORD": {"Reflection"}, "NEW_GEOMETRY": {"Incoming"}}.get(node.type, ())):

@@ -39,6 +39,8 @@ def material_surface(material: bpy.types.Material | None) -> Surface:
     shader = _sided(material.node_tree)
     if _is_displaced(material):
         shader = replace(shader, notes=(*shader.notes, "its displacement is left out; a Displace modifier takes part"))
+    elif _is_bumped(material):
+        shader = replace(shader, notes=(*shader.notes, "its bump is left out; the mesh's own normals count"))
     if varies(shader.reflectance):
         return shader
     reflectance = np.clip(shader.reflectance, 0.0, 1.0)
@@ -65,8 +67,17 @@ def _sided(tree: bpy.types.NodeTree) -> Surface:
 
 def _is_displaced(material: bpy.types.Material) -> bool:
     """Return whether Cycles moves the surface itself."""
+    return material.displacement_method != "BUMP" and _has_displacement(material)
+
+
+def _is_bumped(material: bpy.types.Material) -> bool:
+    """Return whether Cycles turns normals in place of moving the surface."""
+    return material.displacement_method == "BUMP" and _has_displacement(material)
+
+
+def _has_displacement(material: bpy.types.Material) -> bool:
     output = material.node_tree.get_output_node("CYCLES")
-    return material.displacement_method != "BUMP" and output is not None and output.inputs["Displacement"].is_linked
+    return output is not None and output.inputs["Displacement"].is_linked
 
 
 def constant_emission(owner: bpy.types.World | bpy.types.Light) -> tuple[Colour, tuple[str, ...]]:

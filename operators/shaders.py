@@ -35,6 +35,8 @@ NOT_DIFFUSE = {
     "HOLDOUT",
 }
 
+_TURNS_NORMALS = {"NORMAL_MAP": "normal map is", "BUMP": "bump is"}
+
 _MIRRORS = "shows no diffuse light and is black itself; what it mirrors lights others, evenly from all sides"
 
 
@@ -96,6 +98,7 @@ class ShaderReader:
         if output is None:
             return _Shares()
         node = output.node
+        self._tell_normal(node, groups)
         if node.type == "BSDF_PRINCIPLED":
             return self._principled(node, groups)
         if node.type in {"EMISSION", "BACKGROUND"}:
@@ -125,6 +128,15 @@ class ShaderReader:
             first, second = self._shader(node.inputs[0], groups), self._shader(node.inputs[1], groups)
             return _Shares(*(combined(np.add, a, b) for a, b in zip(first, second, strict=True)))
         return self._unsupported(node, groups)
+
+    def _tell_normal(self, node, groups) -> None:
+        """Name what turns the normals by which a shader is lit."""
+        normal = next((socket for socket in node.inputs if socket.identifier == "Normal"), None)
+        source, _ = (None, ()) if normal is None else source_of(normal, groups)
+        # What the geometry has is what an open socket takes.
+        if source is not None and (source.node.type, source.identifier) != ("NEW_GEOMETRY", "Normal"):
+            what = _TURNS_NORMALS.get(source.node.type, "normals by nodes are")
+            self._values.notes.append(f"its {what} left out; the mesh's own normals count")
 
     def _principled(self, node, groups) -> _Shares:
         opaque = self._values.share(node, "Alpha", groups)

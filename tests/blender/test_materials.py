@@ -207,16 +207,34 @@ def test_glass_lets_light_through_and_refracts_it():
     assert surface.reflectance == pytest.approx(np.full(3, 0.16)) and not surface.is_bare
 
 
-def test_displacement_is_named_where_it_moves_the_surface():
+def test_displacement_is_named_by_what_it_does_to_the_surface():
     material = principled()
     tree = material.node_tree
     node = tree.nodes.new("ShaderNodeDisplacement")
     tree.links.new(node.outputs[0], tree.get_output_node("CYCLES").inputs["Displacement"])
     material.displacement_method = "BUMP"
-    assert material_surface(material).notes == ()
+    assert material_surface(material).notes == ("its bump is left out; the mesh's own normals count",)
     material.displacement_method = "DISPLACEMENT"
     (note,) = material_surface(material).notes
     assert "displacement" in note
+
+
+@pytest.mark.parametrize(
+    ("kind", "output", "notes"),
+    [
+        ("ShaderNodeNormalMap", "Normal", ("its normal map is left out; the mesh's own normals count",)),
+        ("ShaderNodeBump", "Normal", ("its bump is left out; the mesh's own normals count",)),
+        ("ShaderNodeVectorMath", "Vector", ("its normals by nodes are left out; the mesh's own normals count",)),
+        ("ShaderNodeNewGeometry", "Normal", ()),
+    ],
+)
+@pytest.mark.parametrize("shader", ["ShaderNodeBsdfPrincipled", "ShaderNodeBsdfDiffuse"])
+def test_what_turns_the_normals_of_a_shader_is_named(shader, kind, output, notes):
+    material = node_material("Rough", shader)
+    tree = material.node_tree
+    lit = next(node for node in tree.nodes if node.bl_idname == shader)
+    tree.links.new(tree.nodes.new(kind).outputs[output], lit.inputs["Normal"])
+    assert material_surface(material).notes == notes
 
 
 def test_an_unknown_shader_is_left_to_blender_and_grey_until_then():

@@ -424,6 +424,19 @@ def test_instances_of_one_object_have_random_numbers_of_their_own():
     assert len(meshes) == 5 and len(shades) == 4
 
 
+@pytest.mark.parametrize(("name", "colour"), [("tint", [0.2, 0.5, 0.1]), ("nothing", [0.0, 0.0, 0.0])])
+def test_attributes_of_the_instancer_are_those_of_the_object_and_black_where_it_has_none(name, colour):
+    def asked(tree):
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "INSTANCER", name
+        return node.outputs["Color"]
+
+    sheet = add_sheet(painted(asked), cells=1)
+    sheet["tint"] = [0.2, 0.5, 0.1]
+    ours, _ = by_us(sheet, "DIFFUSE")
+    assert ours == pytest.approx(np.broadcast_to(colour, ours.shape), abs=1e-5)
+
+
 @pytest.mark.parametrize("kind", ["INSTANCER", "AMBIENT_OCCLUSION", "REFLECTION"])
 def test_what_a_copy_that_stands_alone_cannot_tell_is_named(kind):
     def asked(tree):
