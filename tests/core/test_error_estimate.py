@@ -6,9 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from radiosity_bake.core.bake import bake
 from radiosity_bake.core.checks import FEWEST, MOST, VERTICES_FOR_A_CHECK, check_places
 from radiosity_bake.core.error_estimate import SAFETY, Expected, interpolation_error, neighbours, relative_error
 from radiosity_bake.core.gather import Gathered
+from radiosity_bake.core.scene import Scene, SunLamp, surface_mesh
+from radiosity_bake.core.settings import BakeSettings
+
+from tests.scenes import exact
 
 CELLS = 8
 
@@ -37,6 +42,15 @@ def test_the_error_over_cells_follows_their_extent_along_which_light_changes(axi
     # edge for up to two altitudes.
     assert found[inside].min() >= (1.0 - 1e-9) * 0.25 * extent**2
     assert found[inside].max() <= (1.0 + 1e-9) * 0.5 * extent**2
+
+
+@pytest.mark.parametrize(("fall", "least", "most"), [(0.0, 0.0, 0.0), (0.1, 0.1**2 / 8.0, 0.01), (1.0, 0.4, 0.5)])
+def test_a_face_without_neighbours_misses_as_much_as_a_smooth_fall_or_a_shadow_would(fall, least, most):
+    corners, of_corner = strips(1.0, 1.0)
+    alone = np.array([[[1.0], [1.0], [1.0 - fall]]])
+    found = interpolation_error(corners[:1], neighbours(corners[:1], of_corner[:1]), alone)
+    # Chords of an exponential miss an eighth of the square of its fall, and a shadow's border up to half of the light.
+    assert least <= found[0] <= most
 
 
 def test_the_places_that_are_checked_stand_for_the_area_there_is_and_for_nothing_else():
@@ -105,3 +119,19 @@ def test_what_is_hidden_is_not_wrong():
 def test_there_is_no_error_in_the_dark():
     checks, irradiance = checked(0.0, 0.0)
     assert relative_error(nothing_expected(0.0), checks, 4, irradiance, 0.0) == 0.0
+
+
+def test_faces_that_share_no_vertex_with_others_are_split_at_the_border_of_a_shadow():
+    vertices, triangles = exact.icosphere(1)
+    flat_ball = surface_mesh("ball", 0.5 * vertices + [0.0, 0.0, 2.0], triangles)
+    ground = exact.rectangle("ground", (-20, -20, 0), (40, 0, 0), (0, 40, 0))
+    screen = exact.rectangle("screen", (0.05, -3, 4), (6, 1, 0), (0, 6, 0))
+    sun = SunLamp("sun", np.array([0.0, 0.0, -1.0]), 0.0, np.pi * np.ones(3))
+    settings = BakeSettings(quality="GOOD", threads=2)
+    baked = bake(Scene((flat_ball, ground, screen), np.zeros(3), (sun,)), settings).meshes[0]
+    corners = baked.vertices[baked.triangles]
+    longest = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
+    crossed = np.ptp(baked.irradiance[..., 0], axis=1) > 0.3
+    # Edges of the ball are 0.27 and 0.31 long; two rounds of splitting leave a quarter.
+    assert crossed.any()
+    assert longest[crossed].max() < 0.1
