@@ -71,7 +71,8 @@ def at_receivers(places: Receivers, strict: Floats) -> Floats:
 def surroundings_of(balance: Balance, solution: Solution, tree: PatchTree) -> Surroundings:
     """Average the light over what is seen from each element, again over what is seen from there, and so on.
 
-    Rays that leave the scene see what the element has itself.
+    Few rays that leave the scene go out by a window, and see what the element has itself; where many do, it is outside,
+    among what is as bright as anything.
     """
     dark = ~balance.emission.any(axis=1)
     area, light = np.where(dark, balance.areas, 0.0), solution.incident @ LUMINANCE
@@ -81,7 +82,7 @@ def surroundings_of(balance: Balance, solution: Solution, tree: PatchTree) -> Su
         level = np.clip(light / mean, FAINTEST, 1.0)[:, None]
         unmet = 1.0 - balance.exchange.apply(np.ones_like(level))
         for _ in range(STEPS):
-            level = balance.exchange.apply(level) + unmet * level
+            level = balance.exchange.apply(level) + unmet * (level + unmet * (1.0 - level))
         strict = np.maximum(DIM_ROOM / np.maximum(level[:, 0], FAINTEST), 1.0)
     of_side = np.ones(2 * len(tree))
     own = np.flatnonzero(balance.elements == balance.base)

@@ -15,7 +15,7 @@ from radiosity_bake.core.settings import BakeSettings
 
 from bench.accuracy import irradiance_at_probes
 from bench.probes import area_uniform_probes
-from tests.core.building import cornell_box, moved
+from tests.core.building import moved, room_with_block
 
 GOOD = BakeSettings(quality="GOOD", keep_transport=False)
 AWAY = (100.0, 0.0, 0.0)
@@ -23,8 +23,8 @@ DIMMER = 1.0 / 30.0
 
 
 def two_rooms(dimmer: float) -> Scene:
-    """Two Cornell boxes that do not see each other; the lamp of the second is so much dimmer."""
-    first, second = cornell_box(), moved(cornell_box(), by=AWAY)
+    """Two closed rooms that do not see each other; the lamp of the second is so much dimmer."""
+    first, second = room_with_block(), moved(room_with_block(), by=AWAY)
     others = tuple(replace(m, name=f"Other {m.name}", emission=dimmer * np.asarray(m.emission)) for m in second.meshes)
     return replace(first, meshes=first.meshes + others)
 
@@ -42,16 +42,17 @@ def both() -> BakeResult:
 
 @pytest.fixture(scope="module")
 def alone() -> int:
-    return sum(len(mesh.vertices) for mesh in bake(cornell_box(), GOOD).meshes)
+    return sum(len(mesh.vertices) for mesh in bake(room_with_block(), GOOD).meshes)
 
 
 def test_a_dim_room_gets_about_as_many_vertices_as_alone(both: BakeResult, alone: int):
     _, dim = vertices(both)
-    assert 0.75 * alone < dim < 1.25 * alone
+    # Errors count from three quarters of the mean on: they may be a third larger, with as many fewer vertices.
+    assert 0.6 * alone < dim < 1.2 * alone
 
 
 def test_a_dim_room_is_as_exact_as_a_bright_one(both: BakeResult):
-    room = cornell_box()
+    room = room_with_block()
     there = area_uniform_probes(room, 2000)
     beside = replace(there, mesh=there.mesh + len(room.meshes), position=there.position + AWAY)
     bright, dim = irradiance_at_probes(both, there), irradiance_at_probes(both, beside) / DIMMER
