@@ -28,7 +28,7 @@ from .measure import processor_seconds
 WIDTH, HEIGHT = 320, 200
 
 # Few, and denoised: so do the pictures of `tools.blend_rooms`, for the same reason.
-SAMPLES = 32
+SAMPLES = 256
 
 FACTORY = "factory settings"
 
