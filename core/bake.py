@@ -339,13 +339,13 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "threads": rays.workers.threads,
         "form_factor_standard_error": refinement.typical_standard_error(shares, settings.threshold),
         "minimum_size": smallest,
-        "minimum_face_size": finest if settings.output == "REFINED" else None,
+        "minimum_face_size": finest if refined else None,
         "rounds": rounds.as_report(),
         "ended": rounds.ended,
     }
     taken = room.taken(len(shown.places.points), bytes_of_tables(shown.gathered.places))
     taken += BYTES_PER_TRIANGLE * len(surfaces.triangles)
-    once = settings.output == "REFINED" and on_faces is None
+    once = refined and on_faces is None
     warnings = limit_warnings(rounds, per_row, effort, crowded, cells.are_fewer or once, taken, memory.limit)
     warnings += patch_limit_warnings(rounds, len(tree.patches()), settings.patch_limit)
     story = Story(settings, counts, warnings)
