@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .direct import LUMINANCE
-from .error_estimate import Expected, Neighbours, interpolation_error, lit_area, neighbours
+from .error_estimate import DIM, Expected, Neighbours, interpolation_error, lit_area, neighbours
 from .gather import Gathered, corner_values
 from .geometry import triangle_areas
 from .patches import PatchTree
@@ -92,16 +92,22 @@ class Lit:
     def noise(self, surfaces: Surfaces, strict: Floats) -> float:
         """Noise of the hemisphere rays over the surface, relative to the mean of what has light.
 
+        Where errors count for more, so does the area: a room that a picture is exposed for fills it.
+
         Parameters
         ----------
         strict : (faces, 2) float
             How many times more it counts, on each side of the faces.
         """
-        weight = self.weights(surfaces)
-        area, mean = lit_area(weight, weight * (self.corner_irradiance() @ LUMINANCE).mean(axis=1))
-        noise = self.gathered.noise[self.places.of_corner] * strict[self.face, self.side][:, None]
-        square = float(weight @ (noise**2).mean(axis=1))
-        return math.sqrt(square / area) / mean if mean > 0.0 else 0.0
+        weight, light = self.weights(surfaces), (self.corner_irradiance() @ LUMINANCE).mean(axis=1)
+        _, mean = lit_area(weight, weight * light)
+        if mean <= 0.0:
+            return 0.0
+        times = strict[self.face, self.side]
+        square = (self.gathered.noise[self.places.of_corner] ** 2).mean(axis=1) * times**2
+        weight *= times
+        area = float((weight * np.minimum(light * times / (DIM * mean), 1.0)).sum())
+        return math.sqrt(float(weight @ square) / area) / mean
 
     def _noise_of_channels(self) -> Floats:
         """Noise at the receivers, RMS over the channels, were it in each the same share of the light, (n,)."""

@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
+from radiosity_bake.core import bake as bake_module
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.result import BakeResult
 from radiosity_bake.core.scene import Scene
@@ -16,6 +18,7 @@ from radiosity_bake.core.settings import BakeSettings
 from bench.accuracy import irradiance_at_probes
 from bench.probes import area_uniform_probes
 from tests.core.building import moved, room_with_block
+from tests.scenes import exact
 
 GOOD = BakeSettings(quality="GOOD", keep_transport=False)
 AWAY = (100.0, 0.0, 0.0)
@@ -62,3 +65,19 @@ def test_a_dim_room_is_as_exact_as_a_bright_one(both: BakeResult):
 
 def test_rooms_that_are_equally_bright_are_treated_as_one_alone(alone: int):
     assert sum(vertices(bake(two_rooms(1.0), GOOD))) < 2.2 * alone
+
+
+def noise(scene: Scene) -> float:
+    """Of the hemisphere rays at the first vertices, as it is judged, relative to the mean."""
+    with patch.object(bake_module, "enough_rays", wraps=bake_module.enough_rays) as judged:
+        bake(scene, GOOD)
+    return judged.call_args_list[0].args[2]
+
+
+def test_noise_in_a_dim_room_is_judged_as_if_the_room_were_alone():
+    room = room_with_block()
+    yard = exact.rectangle("yard", (10.0, 0.0, 0.0), (10.0, 0.0, 0.0), (0.0, 10.0, 0.0), reflectance=0.5)
+    under_a_sky = replace(room, meshes=(*room.meshes, yard), world=np.full(3, 2.0))
+    # Errors count from three quarters of the mean on, and nothing but the room has noise. Over all area it would be two
+    # fifths of that.
+    assert noise(under_a_sky) > 0.6 * noise(room)
