@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .geometry import largest_edges
-from .lamps import unoccluded
+from .lamp_shapes import unoccluded
 from .scene import Floats, Lamp, PointLamp
 
 NEAR_SIZE = 0.25

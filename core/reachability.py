@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .lamps import FEW_LAMPS
+from .lamp_shapes import FEW_LAMPS
 from .scene import Floats, Ints
 from .surfaces import Surfaces, signed_volumes
 from .visibility import Hits, RayScene

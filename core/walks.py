@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from .direct import LUMINANCE
 from .geometry import normalized, side_normals
-from .lamps import BEYOND, unoccluded
+from .lamp_shapes import unoccluded
+from .lamps import BEYOND
 from .sampling import cosine_directions, frames, hashed, triangle_weights
 from .scene import AreaLamp, Floats, Ints, Lamp, SunLamp
 from .surfaces import Surfaces

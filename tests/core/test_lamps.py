@@ -10,7 +10,7 @@ from radiosity_bake.core import lamps as core_lamps
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct import all_emitters, direct_light
 from radiosity_bake.core.errors import NoLightError
-from radiosity_bake.core.lamps import FEW_LAMPS, PLACES, unoccluded, unoccluded_of_all
+from radiosity_bake.core.lamp_shapes import FEW_LAMPS, PLACES, unoccluded, unoccluded_of_all
 from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.relight import ChangedSceneError, relight
@@ -334,7 +334,9 @@ def test_a_lamp_that_was_dark_in_the_bake_is_refused():
 def test_receivers_outside_of_a_beam_that_are_left_out_would_get_nothing(lamp, monkeypatch):
     points = np.random.default_rng(0).uniform(-4, 1.2, (4000, 3))
     found = from_above(lamp, points)
-    monkeypatch.setattr("radiosity_bake.core.lamps._in_beam", lambda lamp, points: np.ones(len(points), dtype=bool))
+    monkeypatch.setattr(
+        "radiosity_bake.core.lamp_shapes._in_beam", lambda lamp, points: np.ones(len(points), dtype=bool)
+    )
     np.testing.assert_array_equal(found, from_above(lamp, points))
     assert (found == 0.0).any() and (found > 0.0).any()
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.direct import all_emitters, direct_light
-from radiosity_bake.core.lamps import FEW_LAMPS
+from radiosity_bake.core.lamp_shapes import FEW_LAMPS
 from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.relight import ChangedSceneError, relight
 from radiosity_bake.core.scene import LightLinking, PointLamp, Scene
