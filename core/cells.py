@@ -23,8 +23,8 @@ from .scene import Floats, Ints
 from .textures import cell_centres, cell_corners
 from .visibility import Hits
 
-MOST_CELLS = 2**21
-"""Cells of all patches together: 64 MB for what is seen on their two sides."""
+MOST_CELLS = 2**20
+"""Cells of all patches together: 32 MB for what is seen on their two sides. The default memory limit holds them."""
 
 MOST_CELLS_ALONG_EDGE = 512
 """Of a coarse patch; of a wider one, such as a ground that reaches far beyond all else, the leaves are cut instead."""

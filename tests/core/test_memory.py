@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.cells import MOST_CELLS
+from radiosity_bake.core.memory import Memory
 from radiosity_bake.core.scene import PointLamp, Scene
 from radiosity_bake.core.settings import BakeSettings
 
@@ -24,6 +26,8 @@ sys.path.insert(0, sys.argv[1])
 from tools.package import load_package
 load_package()
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.cells import MOST_CELLS
+from radiosity_bake.core.memory import Memory
 from radiosity_bake.core.settings import BakeSettings
 from bench.scenes import SCENES
 
@@ -77,3 +81,7 @@ def test_less_memory_changes_nothing_or_a_warning_says_so(output):
     for warnings, found in zip(told, values, strict=True):
         same = all(np.array_equal(one, other) for one, other in zip(found, values[-1], strict=True))
         assert same or warnings
+
+
+def test_the_default_limit_has_room_for_all_cells_there_may_be():
+    assert Memory(BakeSettings().memory_limit * 2**20, 1, 1).most_cells() >= MOST_CELLS
