@@ -15,6 +15,10 @@ NEAR_SIZE = 0.25
 """Longest edge of a triangle, in distances of the lamp, up to which the light on it is about that at three points: they
 integrate it to the second order, and what is left is below 0.1%."""
 
+SLENDER = 4.0
+"""Longest edge over the altitude on it from which on a triangle is halved, and not cut into four, which are as slender:
+of a sliver's parts, a lamp would have twice as many near it with each cut."""
+
 MOST_HALVINGS = 12
 """Splits of a patch towards a lamp that all but touches it."""
 
@@ -33,7 +37,7 @@ def near_shares(lamps: tuple[Lamp, ...], corners: Floats, points: Floats, normal
         return {}
     found = {}
     for number, lamp in enumerate(lamps):
-        if not isinstance(lamp, PointLamp):
+        if not isinstance(lamp, PointLamp) or not lamp.strength.any():
             continue
         near = np.flatnonzero(_is_near(lamp, corners))
         sampled = unoccluded(lamp, points[near].reshape(-1, 3), normals[near].reshape(-1, 3))
@@ -55,23 +59,49 @@ def mean_unoccluded(lamp: PointLamp, corners: Floats, normals: Floats) -> Floats
     normals : (n, 3) float
     """
     mean = np.zeros(len(corners))
-    triangle, share = np.arange(len(corners)), 1.0
+    triangle, share = np.arange(len(corners)), np.ones(len(corners))
     for halving in range(MOST_HALVINGS + 1):
         split = _is_near(lamp, corners) if halving < MOST_HALVINGS else np.zeros(len(corners), dtype=bool)
         done = np.flatnonzero(~split)
         middles = (corners[done] + np.roll(corners[done], -1, axis=1)) / 2.0
         light = unoccluded(lamp, middles.reshape(-1, 3), np.repeat(normals[triangle[done]], 3, axis=0))
-        mean += share * np.bincount(triangle[done], weights=light.reshape(-1, 3).mean(axis=1), minlength=len(mean))
-        corners, triangle, share = _quarters(corners[split]), np.tile(triangle[split], 4), share / 4.0
+        weighted = share[done] * light.reshape(-1, 3).mean(axis=1)
+        mean += np.bincount(triangle[done], weights=weighted, minlength=len(mean))
+        slender = _is_slender(corners)
+        four, two = np.flatnonzero(split & ~slender), np.flatnonzero(split & slender)
+        corners = np.concatenate([_quarters(corners[four]), _halves(corners[two])])
+        triangle = np.concatenate([np.tile(triangle[four], 4), np.tile(triangle[two], 2)])
+        share = np.concatenate([np.tile(share[four] / 4.0, 4), np.tile(share[two] / 2.0, 2)])
     return mean
 
 
 def _is_near(lamp: PointLamp, corners: Floats) -> NDArray[np.bool_]:
     """Whether light changes too much over triangles, (n,)."""
     distance = np.linalg.norm(corners.mean(axis=1) - lamp.centre, axis=1)
-    size = largest_edges(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+    size = _sizes(corners)
     near: NDArray[np.bool_] = size > NEAR_SIZE * np.maximum(distance, lamp.radius)
     return near
+
+
+def _is_slender(corners: Floats) -> NDArray[np.bool_]:
+    """Whether triangles are much longer than wide, (n,)."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    slender: NDArray[np.bool_] = _sizes(corners) ** 2 > SLENDER * np.linalg.norm(across, axis=1)
+    return slender
+
+
+def _sizes(corners: Floats) -> Floats:
+    """Longest edges of triangles, (n,)."""
+    return largest_edges(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+
+
+def _halves(corners: Floats) -> Floats:
+    """Triangles cut from the middle of their longest edge, (2 n, 3, 3)."""
+    longest = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).argmax(axis=1)
+    turn = (longest[:, None] + np.arange(3)) % 3
+    a, b, c = np.moveaxis(np.take_along_axis(corners, turn[..., None], axis=1), 1, 0)
+    middle = (a + b) / 2.0
+    return np.concatenate([np.stack(part, axis=1) for part in ((a, middle, c), (middle, b, c))])
 
 
 def _quarters(corners: Floats) -> Floats:

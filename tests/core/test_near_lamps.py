@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.near_lamps import mean_unoccluded
+from radiosity_bake.core.lamps import unoccluded
+from radiosity_bake.core.near_lamps import mean_unoccluded, near_shares
 from radiosity_bake.core.scene import PointLamp, Scene
 from radiosity_bake.core.settings import BakeSettings
 
@@ -33,6 +34,26 @@ def test_the_mean_over_a_triangle_is_its_solid_angle(height):
     mean = mean_unoccluded(replace(LAMP, centre=centre), CORNERS, UP)[0]
     # `NEAR_SIZE`: the rule of three points leaves less than 0.1% where the triangle is as large as is allowed.
     assert mean * np.pi * 0.03 == pytest.approx(solid_angle(CORNERS[0], centre), rel=0.001)
+
+
+def test_a_mile_long_sliver_beside_a_lamp_has_few_parts_near_it(monkeypatch):
+    asked = []
+
+    def counted(lamp, points, normals):
+        asked.append(len(points))
+        return unoccluded(lamp, points, normals)
+
+    monkeypatch.setattr("radiosity_bake.core.near_lamps.unoccluded", counted)
+    sliver = np.array([[(-1000.0, 0.0, 0.0), (1000.0, 0.0, 0.0), (0.0, 0.001, 0.0)]])
+    mean = mean_unoccluded(replace(LAMP, centre=np.array([0.0, 0.0, 20.0])), sliver, UP)[0]
+    assert mean * np.pi == pytest.approx(solid_angle(sliver[0], np.array([0.0, 0.0, 20.0])), rel=0.001)
+    # Each halving leaves a few dozen parts, of three points; of quarters there would be twice as many with each cut.
+    assert sum(asked) < 3000
+
+
+def test_a_lamp_that_gives_no_light_takes_no_time():
+    dark = replace(LAMP, strength=np.zeros(3))
+    assert near_shares((dark,), CORNERS, CORNERS, np.repeat(UP[:, None], 3, axis=1)) == {}
 
 
 @pytest.mark.parametrize("gap", [0.005, 0.02, 0.05])
