@@ -362,7 +362,7 @@ def wanted_sides(faces: Faces, surfaces: Surfaces, lit: NDArray[np.bool_]) -> tu
 
 def counted_share(areas: Floats, largest: float) -> Floats:
     """Share of the areas of patches that counts, where each counts for `largest` at most."""
-    share: Floats = np.minimum(1.0, largest / np.maximum(areas, np.finfo(np.float64).tiny))
+    share: Floats = largest / np.maximum(areas, max(largest, np.finfo(np.float64).tiny))
     return share
 
 

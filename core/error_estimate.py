@@ -155,7 +155,9 @@ def interpolation_error(corners: Floats, beside: Neighbours, values: Floats) -> 
     alone = np.ones(len(corners), dtype=bool)
     alone[beside.edge // 3], alone[beside.other // 3] = False, False
     alone = np.flatnonzero(alone)
-    own = (high[alone] - low[alone]) ** 2 / (2.0 * np.maximum(high[alone], np.finfo(np.float64).tiny))
+    # What is drawn on in a straight line beyond a cut may be below zero.
+    span = high[alone] - low[alone]
+    own = span**2 / (2.0 * np.maximum(np.maximum(high[alone], span), np.finfo(np.float64).tiny))
     square[3 * alone] = (own**2).mean(axis=1)
     for start in range(0, len(beside.edge), PAIRS_AT_ONCE):
         edge, other = (side[start : start + PAIRS_AT_ONCE] for side in (beside.edge, beside.other))
