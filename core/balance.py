@@ -152,7 +152,10 @@ class Balance:
     sky : SkyShares or None
         Where these leave it to, where the world has a map.
     areas : (m,) float
-        Area that is not inside a solid, and that light does not go through.
+        Area that is not inside a solid, that light does not go through, and that nothing in the same place is met for.
+    emitting_areas : (m,) float
+        The same with what is in one place with something else: as each emitter is sampled by itself, it lights as often
+        as it is there.
     buried : (m,) float
         Share of the area that is.
     means : TriangleMeans
@@ -166,6 +169,7 @@ class Balance:
     escape: Floats
     sky: SkyShares | None
     areas: Floats
+    emitting_areas: Floats
     buried: Floats
     means: TriangleMeans
     reflectance: Floats
@@ -206,13 +210,15 @@ def balance_of(transport: Transport, cover: Cover, shares: Shares) -> Balance:
     share[number[twins]] = below / np.maximum(below + beside, 1.0)
     share[number[cover.element]] -= share[number[twins]]
     means = TriangleMeans.over(tree, base >> 1)
+    areas = tree.areas(base >> 1) * (1.0 - buried) * share * means.opacity(surfaces)[:, 0]
     return Balance(
         elements,
         base,
         exchange_of(number[shares.receiver[~lost]], number[shares.source[~lost]], shares.share[~lost]),
         escape,
         sky_shares(transport, number, escape) if surfaces.world.ndim > 1 else None,
-        tree.areas(base >> 1) * (1.0 - buried) * share * transport.met_share(base) * means.opacity(surfaces)[:, 0],
+        areas * transport.met_share(base),
+        areas,
         buried,
         means,
         means.reflectance(surfaces),
@@ -391,18 +397,18 @@ def energy(
         Irradiance over pi that elements get of lamps, of the suns that stand for parts of the world, and of linked
         emission.
     """
-    area = np.pi * balance.areas[:, None]
+    area, emitting = np.pi * balance.areas[:, None], np.pi * balance.emitting_areas[:, None]
     # What light goes through takes none of it away.
     met = area * balance.means.of(surfaces.seen[:, None].astype(np.float64))
     linked = np.array([linking != UNLINKED for linking in surfaces.linking])[surfaces.mesh_of_triangle]
     emission = balance.emission * (1.0 - balance.means.of(linked[:, None].astype(np.float64)))
-    emitted = float((area * emission).sum() + (met * from_linked).sum())
+    emitted = float((emitting * emission).sum() + (met * from_linked).sum())
     world = float((met * (balance.from_world(surfaces.world) + from_suns)).sum())
     lamps = float((met * from_lamps).sum())
     reflected = float((met * solution.reflected).sum())
     sent_on = balance.reflectance if balance.translucence is None else balance.reflectance + balance.translucence.share
     absorbed = float((met * (1.0 - sent_on) * solution.incident).sum())
-    escaped = float(((area * emission + met * solution.reflected) * balance.escape[:, None]).sum())
+    escaped = float(((emitting * emission + met * solution.reflected) * balance.escape[:, None]).sum())
     total = emitted + world + lamps
     return {
         "emitted": emitted,

@@ -419,11 +419,10 @@ class Transport:
     def met_share(self, elements: Ints) -> Floats:
         """Share of elements (m,) that rays from outside meet: less than 1 where something else lies in their plane.
 
-        Of two faces in one place rays meet now the one and now the other, and what both get is there once. What emits
-        is sampled by itself, and lights twice where it is there twice.
+        Of two faces in one place rays meet now the one and now the other, and what both get is there once.
         """
         share = np.ones(len(elements))
-        doubled = self.surfaces.doubled() & self.surfaces.seen & ~self.surfaces.emission.any(axis=1)
+        doubled = self.surfaces.doubled() & self.surfaces.seen
         asked = np.flatnonzero(doubled[self.tree.triangle[elements >> 1]])
         points, normals = sample_points(self.surfaces, self.tree, elements[asked], PROBES, self.seed + 61)
 

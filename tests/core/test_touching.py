@@ -195,8 +195,20 @@ BLOCK = block("block", (0.5, 0.5, 0.0), (1.1, 1.1, 0.8))
         (*exact.box_walls((2, 2, 2), reflectance=0.5), FLOOR, LAMP, BLOCK),
         (*exact.box_walls((2, 2, 2), reflectance=0.5), flipped(FLOOR), LAMP, BLOCK),
         (ROOM, LAMP, BLOCK, block("other", (0.9, 0.6, 0.0), (1.5, 0.9, 0.8))),
+        (ROOM, LAMP, LAMP, BLOCK),
+        (ROOM, LAMP, replace(LAMP, emission=0.0 * LAMP.emission), BLOCK),
+        (replace(ROOM, emission=ROOM.reflectance), replace(ROOM, emission=ROOM.reflectance)),
     ],
-    ids=["faces", "room", "floor", "floor turned over", "blocks as high as each other"],
+    ids=[
+        "faces",
+        "room",
+        "floor",
+        "floor turned over",
+        "blocks as high as each other",
+        "lamp",
+        "lamp that does not glow",
+        "room that glows",
+    ],
 )
 def test_what_is_there_twice_is_no_light_unaccounted_for(meshes):
     report = bake(Scene(tuple(meshes), DARK), DRAFT).report
