@@ -133,6 +133,10 @@ GATHER_SHARE = 0.6
 
 FEWEST_RAYS_PER_PATCH = 16
 
+MOST_TIMES_RAYS = 16
+"""Times as many rays, and points that tell what covers it, that a patch gets at most where the patch limit left few: as
+what they miss does not average out, together they get the rays of as many as the quality wants."""
+
 MOST_RAYS = 2**25
 """Rays of the coarsest patches: above it each gets fewer, as the rays of many patches together average out."""
 
@@ -416,7 +420,7 @@ def subdivided(
         per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
         transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
         clock.start("Form factors", 0.03, 0.4)
-        rounds = subdivide(transport, lit, settings, smallest, most_rays, clock)
+        rounds = subdivide(transport, lit, settings, effort, smallest, most_rays, clock)
         seeing = transport.seeing_area()
         if settings.method == "UNIFORM" or seeing == 0.0 or seeing >= LEAST_SEEING * area:
             return transport, rounds, area
@@ -454,6 +458,7 @@ def subdivide(
     transport: Transport,
     lit: NDArray[np.bool_],
     settings: BakeSettings,
+    effort: Effort,
     smallest: float,
     most_rays: int,
     clock: Clock,
@@ -473,8 +478,16 @@ def subdivide(
 
     report = clock.repeated(ROUND_SHARE, lambda: f"{len(tree.patches()):,} patches, {transport.rays.rays:,} rays")
     if settings.method == "ADAPTIVE":
-        return refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report, most)
-    return refinement.refine_uniformly(transport, seeds, smallest, most_rays, report, most)
+        rounds = refinement.refine(transport, seeds, settings.threshold, smallest, most_rays, report, most)
+    else:
+        rounds = refinement.refine_uniformly(transport, seeds, smallest, most_rays, report, most)
+    if rounds.ended == refinement.PATCHES_MET:
+        together = min(effort.patches * effort.rays_per_patch, most_rays)
+        times = min(together // max(transport.kept_rays(), 1), MOST_TIMES_RAYS)
+        if times > 1:
+            transport.begin_anew(times)
+            refinement.trace_all(transport, seeds, report)
+    return rounds
 
 
 def limit_warnings(

@@ -124,7 +124,7 @@ class Cover:
         Elements that are covered in part; their twins are numbered on from 2 * nodes.
     points, normals : (k, COVER_POINTS, 3) float
         Where they were tested.
-    short : (k, COVER_POINTS) float
+    short : (k, points) float
         Share of the rays from there that are short: a point belongs to either part by so much.
     first_twin : int
     twin : (2 * nodes,) int32

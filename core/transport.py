@@ -85,6 +85,8 @@ class Transport:
     ----------
     tables : list of Rows
         Elements with rows of ordinary length, and those with long ones.
+    rays_per_row, cover_points : int
+        Rays of an ordinary row, and points of a patch at which it is told whether it is covered in part.
     cover : Cover or None
         Elements told apart into what is covered and what is not, once refinement has ended.
     """
@@ -99,15 +101,22 @@ class Transport:
         seed: int,
     ) -> None:
         self.surfaces, self.tree, self.rays, self.seed = surfaces, tree, rays, seed
-        self.rays_per_row = rays_per_row
         self.unlit_side: NDArray[np.bool_] = ~lit[surfaces.shell_of_triangle].ravel()
         self.cover: Cover | None = None
-        self.tables = [Rows.none(rays_per_row), Rows.none(rays_per_row * LONG_ROW)]
         self.locator = Locator(tree)
+        self._begin(rays_per_row, COVER_POINTS)
+
+    def _begin(self, rays_per_row: int, cover_points: int) -> None:
+        self.rays_per_row, self.cover_points = rays_per_row, cover_points
+        self.tables = [Rows.none(rays_per_row), Rows.none(rays_per_row * LONG_ROW)]
         self._patterns = [
-            Patterns.make(0, rays_per_row, seed),
-            Patterns.make(rays_per_row, rays_per_row * (LONG_ROW - 1), seed),
+            Patterns.make(0, rays_per_row, self.seed),
+            Patterns.make(rays_per_row, rays_per_row * (LONG_ROW - 1), self.seed),
         ]
+
+    def begin_anew(self, times: int) -> None:
+        """Forget all rows: those to come have so many times as many rays, and patches as many points."""
+        self._begin(self.rays_per_row * times, self.cover_points * times)
 
     def row_count(self) -> int:
         """Rows traced and kept."""
@@ -350,7 +359,7 @@ class Transport:
             short = (table.distance < reach[table.element][:, None]).mean(axis=1)
             some.append(table.element[(short > 0.5 / COVER_POINTS) & (short < 1.0 - 0.5 / COVER_POINTS)])
         elements = np.sort(np.concatenate(some))
-        points, normals = sample_points(self.surfaces, tree, elements, COVER_POINTS, self.seed + 31)
+        points, normals = sample_points(self.surfaces, tree, elements, self.cover_points, self.seed + 31)
         for rays in (COVER_RAYS, SURE_COVER_RAYS):
             short = self._short(elements, points, normals, reach, rays, report)
             covered = short >= LEAST_SHORT
@@ -374,22 +383,23 @@ class Transport:
         rays: int,
         report: Callable[[float], None],
     ) -> Floats:
-        """Share of short ones of so many rays at points of elements, (k, COVER_POINTS)."""
+        """Share of short ones of so many rays at points of elements, (k, points)."""
         patterns = Patterns.make(0, rays, self.seed + 32)
+        count = points.shape[1]
 
         def work(first: int, last: int) -> Floats:
             axis = normals[first:last].reshape(-1, 3)
-            key = (elements[first:last, None] * COVER_POINTS + np.arange(COVER_POINTS)).ravel()
+            key = (elements[first:last, None] * count + np.arange(count)).ravel()
             pattern, angle = patterns.choose(key, self.seed + 33)
             directions = (patterns.directions[pattern] @ frames(axis, angle)).reshape(-1, 3)
             start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * OFFSET).astype(np.float32)
             found = self.rays.first_hits(np.repeat(start, rays, axis=0), directions)
-            short = found.distance.reshape(-1, COVER_POINTS, rays) < reach[elements[first:last]][:, None, None]
+            short = found.distance.reshape(-1, count, rays) < reach[elements[first:last]][:, None, None]
             result: Floats = short.mean(axis=2)
             return result
 
-        parts = self.rays.workers.map(work, len(elements), COVER_POINTS * rays, report)
-        return np.concatenate([np.zeros((0, COVER_POINTS)), *parts])
+        parts = self.rays.workers.map(work, len(elements), count * rays, report)
+        return np.concatenate([np.zeros((0, count)), *parts])
 
     def is_aside(self) -> NDArray[np.bool_]:
         """Elements that are partly inside a solid or covered, whose light is that of their rest, (2 * nodes,)."""

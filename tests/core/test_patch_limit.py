@@ -5,6 +5,7 @@
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.lighting import LARGEST_IMBALANCE
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.settings import BakeSettings
 
@@ -63,6 +64,15 @@ def test_the_light_of_few_patches_is_that_of_the_room_within_the_error_that_is_t
     few, _ = baked(room_with_block(), 60)
     assert few.report["estimated_error"] > free.report["estimated_error"]
     assert mean_over(few.meshes) == pytest.approx(mean_over(free.meshes), rel=few.report["estimated_error"])
+
+
+def test_what_few_patches_exchange_is_not_left_to_chance():
+    room = exact.closed_room((2, 2, 2), reflectance=0.8)
+    lamp = exact.rectangle("lamp", (0.7, 0.7, 1.93), (0, 0.6, 0), (0.6, 0, 0), emission=5.0)
+    for seed in range(4):
+        result, _ = baked(Scene((room, lamp), np.zeros(3)), 20, seed=seed, output="ORIGINAL")
+        # A row of ordinary length each, and as few points on the ceiling above the lamp, miss up to a seventh of it.
+        assert abs(result.report["energy"]["imbalance"]) < LARGEST_IMBALANCE
 
 
 def test_the_parts_of_patches_are_as_many_as_dividing_them_makes():
