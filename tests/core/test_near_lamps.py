@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.lamps import unoccluded
+from radiosity_bake.core.lamp_shapes import unoccluded
 from radiosity_bake.core.near_lamps import mean_unoccluded, near_shares
 from radiosity_bake.core.scene import PointLamp, Scene
 from radiosity_bake.core.settings import BakeSettings
