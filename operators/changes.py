@@ -84,6 +84,12 @@ def make_active(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal:
     journal.set(view_layer.objects, "active", obj)
 
 
+def remove_mesh_if_unused(mesh: bpy.types.Mesh) -> None:
+    """Remove a mesh that no object shows."""
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)
+
+
 def remove_attribute(mesh: bpy.types.Mesh, name: str, journal: Journal) -> None:
     """Remove a colour attribute, keeping its values until all else went well."""
     attribute = mesh.color_attributes[name]

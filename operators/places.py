@@ -10,6 +10,7 @@ import numpy as np
 
 from .changes import link
 from .journal import Journal
+from .likeness import take_animation, take_constraints
 from .record import is_output
 
 _PARENTING = ("parent", "parent_type", "parent_bone", "parent_vertices")
@@ -107,12 +108,14 @@ def follow(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journa
     """Give `source` the transform of its refined object, and the parent, if that was moved since the bake; say if so.
 
     A copy that was moved away from a refined object which was not is no move. What is animated stays where the
-    animation puts it.
+    animation puts it. What the refined object was animated or constrained by since, `source` is by then, too.
     """
     outputs = list(outputs)
-    if not outputs or not all(_was_moved(output, source) for output in outputs):
-        return False
-    if any(_is_animated(obj) for obj in (source, outputs[0])):
+    was_animated = is_animated(source)
+    taken = len(outputs) == 1 and _take_what_moves(source, outputs[0], journal)
+    if was_animated or not outputs or not all(_was_moved(output, source) for output in outputs):
+        return taken
+    if not taken and is_animated(outputs[0]):
         return False
     before, now = _transform(source), _transform(outputs[0])
     if is_bent_by_parent(source) and outputs[0].parent == source.parent:
@@ -120,6 +123,46 @@ def follow(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journa
     journal.on_failure(_set_transform, source, before)
     _set_transform(source, now)
     return True
+
+
+def _take_what_moves(source: bpy.types.Object, output: bpy.types.Object, journal: Journal) -> bool:
+    """Give `source` the constraints of its refined object that it lacks, an animation if it has none; say if so."""
+    if source.library is not None or not shows_place(output):
+        return False
+    taken = take_constraints(source, output, journal)
+    if is_animated(output) and not is_animated(source) and not output.animation_data.nla_tracks:
+        take_animation(source, output, journal)
+        return True
+    return taken
+
+
+def take_transform(output: bpy.types.Object, source: bpy.types.Object, journal: Journal) -> None:
+    """Have a refined object stand where its original is, by the same parent, animation and constraints."""
+    values = _transform(source)
+    if is_bent_by_parent(source):
+        values["parent_type"] = "OBJECT"
+    journal.on_failure(_set_transform, output, _transform(output))
+    _set_transform(output, values)
+    take_constraints(output, source, journal)
+    if is_animated(source):
+        take_animation(output, source, journal)
+    journal.set(output.radiosity, "place", tuple(output.radiosity.place))
+    remember_place(output)
+
+
+def follow_collections(source: bpy.types.Object, output: bpy.types.Object, journal: Journal) -> None:
+    """Move `source` into the collections that the artist moved its refined object to."""
+    scenes = output.users_scene
+    if source.library is not None or not scenes:
+        return
+    before, now = homes_of(source, scenes[0]), output.users_collection
+    for collection in now:
+        if collection not in before and source.name_full not in {obj.name_full for obj in collection.objects}:
+            link(source, collection, journal)
+    for collection in source.users_collection:
+        if collection in before and collection not in now:
+            journal.on_failure(collection.objects.link, source)
+            collection.objects.unlink(source)
 
 
 def is_bent_by_parent(obj: bpy.types.Object) -> bool:
@@ -155,7 +198,8 @@ def _was_moved(output: bpy.types.Object, source: bpy.types.Object) -> bool:
     return not same_place(np.array(output.radiosity.place).reshape(4, 4), output.matrix_basis)
 
 
-def _is_animated(obj: bpy.types.Object) -> bool:
+def is_animated(obj: bpy.types.Object) -> bool:
+    """Return whether anything of `obj` is keyed or driven."""
     animation = obj.animation_data
     return animation is not None and bool(animation.action or len(animation.drivers) or len(animation.nla_tracks))
 

@@ -10,21 +10,34 @@ from mathutils import Matrix
 
 from ..core.result import BakedMesh
 from ..core.scene import Floats
+from .attachments import take_properties
 from .attributes import Attributes
 from .changes import (
     in_view_layer,
     link,
     make_active,
     remember_record,
+    remove_mesh_if_unused,
     select,
     set_eye,
 )
 from .colours import write_colours
+from .display import is_display
 from .journal import Journal
 from .layers import Subdivision, carry, carry_vertex_groups
 from .likeness import take_after
 from .local_mesh import inverse_of
-from .places import homes_of, is_bent_by_parent, remember_place, take_out
+from .places import (
+    follow,
+    homes_of,
+    is_bent_by_parent,
+    outputs_by_source,
+    remember_place,
+    show_again,
+    shows_place,
+    take_out,
+    take_transform,
+)
 from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
 from .targets import Target
 from .textured import Displays
@@ -42,21 +55,92 @@ def store_refined(
     displays: Displays,
     view_layer: bpy.types.ViewLayer,
     journal: Journal,
+    kept: bpy.types.Object | None = None,
 ) -> bpy.types.Object:
-    """Make the refined object of `source`, show it and hide `source`; return it."""
+    """Make the refined object of `source`, show it and hide `source`; return it.
+
+    Parameters
+    ----------
+    kept : Object, optional
+        The refined object of an earlier bake, which stays with all that is attached to it and gets a new mesh.
+    """
     inverse = inverse_of(target.matrix)
+    if kept is not None:
+        # Its name is free for the new one.
+        journal.set(kept.data, "name", f"{kept.data.name} (discarded)"[:60])
     mesh = _refined_mesh(output_name(source), target, baked, attributes, inverse, journal)
     _give_slots(mesh, source, target, baked, displays)
-    output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
+    if kept is None:
+        output = _object_like(source, mesh, keep_transform=inverse is not None, journal=journal)
+    else:
+        output = kept
+        _renew(output, source, mesh, journal)
     if target.layers is not None:
         carry_vertex_groups(output, target.layers, _subdivision(target, baked))
     # Last of all that is done to the mesh, because it may drop faces that Blender cannot hold (a corner used twice)
     # with all that belongs to them.
     mesh.validate()
-    for collection in homes_of(source, view_layer.id_data):
-        link(output, collection, journal)
-    _take_place(source, output, view_layer, journal)
+    if kept is None:
+        for collection in homes_of(source, view_layer.id_data):
+            link(output, collection, journal)
+        _take_place(source, output, view_layer, journal)
+    else:
+        _keep_place(source, output, view_layer, journal)
     return output
+
+
+def refined_to_keep(source: bpy.types.Object, target: Target) -> bpy.types.Object | None:
+    """Return the refined object that stands for `source` and can be given the mesh of a new bake, or None.
+
+    One that has its original's transform cannot stand for an object that is flattened by now, nor the other way round.
+    """
+    outputs = outputs_by_source().get(source, [])
+    if len(outputs) != 1 or shows_place(outputs[0]) != (inverse_of(target.matrix) is not None):
+        return None
+    return outputs[0]
+
+
+def _renew(output: bpy.types.Object, source: bpy.types.Object, mesh: bpy.types.Mesh, journal: Journal) -> None:
+    """Give a refined object the mesh of a new bake, and what `source` got meanwhile."""
+    before = output.data
+    take_properties(mesh, before, journal, over=False)
+    for index, material in enumerate(before.materials):
+        # What the artist gave it stays.
+        if material is not None and not is_display(material) and index < len(mesh.materials):
+            mesh.materials[index] = material
+    journal.on_failure(_set_slots, output, [(slot.link, slot.material) for slot in output.material_slots])
+    journal.set(output, "data", mesh)
+    journal.later(remove_mesh_if_unused, before)
+    stem = _ADDED_TO_NAME.sub("", output.name)
+    if stem != output.name and f"{stem} Radiosity" != output_name(source):
+        journal.set(output, "name", output_name(source))
+    take_properties(output, source, journal, over=False)
+    if shows_place(output):
+        follow(source, [output], journal)
+        take_transform(output, source, journal)
+
+
+def _set_slots(obj: bpy.types.Object, slots: list[tuple[str, bpy.types.Material | None]]) -> None:
+    for slot, (linked, material) in zip(obj.material_slots, slots, strict=True):
+        slot.link = linked
+        slot.material = material
+
+
+def _keep_place(
+    source: bpy.types.Object, output: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal
+) -> None:
+    """Hide `source` again behind a refined object that stays, should it have been shown or deleted."""
+    if view_layer.objects.active == source:
+        make_active(output, view_layer, journal)
+    if source.library is not None:
+        take_out(source, journal)
+        return
+    show_again(source, [output], journal)
+    if in_view_layer(source, view_layer):
+        select(source, False, view_layer, journal)
+    if source.radiosity.kind != HIDDEN_SOURCE:
+        _remember_visibility(source, view_layer, journal)
+    _hide(source, view_layer, journal)
 
 
 def output_name(source: bpy.types.Object) -> str:
@@ -218,10 +302,19 @@ def _take_place(
     if source.library is not None:
         take_out(source, journal)
         return
+    _remember_visibility(source, view_layer, journal)
+    _hide(source, view_layer, journal)
+
+
+def _remember_visibility(source: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal) -> None:
     remember_record(source, journal)
     record = source.radiosity
     record.kind = HIDDEN_SOURCE
-    record.hide_render, record.hide_viewport, record.hide_eye = source.hide_render, source.hide_viewport, eye
+    record.hide_render, record.hide_viewport = source.hide_render, source.hide_viewport
+    record.hide_eye = in_view_layer(source, view_layer) and source.hide_get(view_layer=view_layer)
+
+
+def _hide(source: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal) -> None:
     set_eye(source, True, view_layer, journal)
     journal.set(source, "hide_render", True)
     journal.set(source, "hide_viewport", True)

@@ -8,19 +8,21 @@ import bpy
 from mathutils import Matrix
 
 from . import display
+from .attachments import hand_over, lost_with, take_properties
 from .changes import (
     clear_record,
     in_view_layer,
     make_active,
     remember_active_attributes,
     remove_attribute,
+    remove_mesh_if_unused,
     rename_attribute,
     select,
     set_active_attributes,
     set_eye,
 )
 from .journal import Journal
-from .places import follow, outputs_by_source, same_place, show_again, shows_place
+from .places import follow, follow_collections, outputs_by_source, same_place, show_again, shows_place
 from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, is_output, source_of
 
 
@@ -51,7 +53,7 @@ class RADIOSITY_OT_restore(bpy.types.Operator):
         baked = baked_objects(context.selected_objects) or baked_objects(context.scene.objects)
         baked = list(dict.fromkeys([*baked, *orphans(context.scene.objects)]))
         shown = {obj: shown_place(obj) for obj in baked}
-        restore(baked, context.view_layer)
+        cautions = restore(baked, context.view_layer)
         context.view_layer.update()
         elsewhere = [obj for obj in baked if shown[obj] is not None and not same_place(shown[obj], obj.matrix_world)]
         if not any(is_baked(obj) for obj in context.scene.objects):
@@ -60,8 +62,8 @@ class RADIOSITY_OT_restore(bpy.types.Operator):
         sentence = f"Restored {len(baked)} {'object' if len(baked) == 1 else 'objects'}"
         if elsewhere:
             names = ", ".join(f'"{obj.name}"' for obj in elsewhere)
-            sentence += f"; {names} went back to where its animation or constraints put it"
-        self.report({"WARNING" if elsewhere else "INFO"}, sentence)
+            cautions.append(f"{names} went back to where its animation or constraints put it")
+        self.report({"WARNING" if cautions else "INFO"}, "; ".join([sentence, *cautions]))
         return {"FINISHED"}
 
 
@@ -89,21 +91,25 @@ def shown_place(source: bpy.types.Object) -> Matrix | None:
     return outputs[0].matrix_world.copy() if len(outputs) == 1 and outputs[0].visible_get() else None
 
 
-def restore(objects: Iterable[bpy.types.Object], view_layer: bpy.types.ViewLayer) -> None:
-    """Bring back what `objects` were before their bake, all of them or none."""
+def restore(objects: Iterable[bpy.types.Object], view_layer: bpy.types.ViewLayer) -> list[str]:
+    """Bring back what `objects` were before their bake, all of them or none; return sentences on what is lost by it."""
     with Journal() as journal:
-        for obj in objects:
-            restore_object(obj, view_layer, journal)
+        cautions = [caution for obj in objects for caution in restore_object(obj, view_layer, journal)]
         journal.later(display.remove_unused_display_materials)
+    return cautions
 
 
-def restore_object(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal) -> None:
-    """Bring back what `obj`, an original, was before its bake; nothing happens if it was not baked."""
+def restore_object(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal) -> list[str]:
+    """Bring back what `obj`, an original, was before its bake; nothing happens if it was not baked.
+
+    What the artist attached to a refined object goes over to `obj`; sentences tell what cannot.
+    """
     outputs = outputs_of(obj)
     if outputs or obj.radiosity.kind == HIDDEN_SOURCE:
-        _restore_source(obj, outputs, view_layer, journal)
-    elif obj.radiosity.kind == BAKED_IN_PLACE:
+        return _restore_source(obj, outputs, view_layer, journal)
+    if obj.radiosity.kind == BAKED_IN_PLACE:
         _restore_in_place(obj, journal)
+    return []
 
 
 def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
@@ -115,11 +121,19 @@ def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
 # Refined: the source is hidden, its output shown
 
 
-def _restore_source(source, outputs, view_layer, journal: Journal) -> None:
+def _restore_source(source, outputs, view_layer, journal: Journal) -> list[str]:
     selected = bool(_selected(outputs, view_layer))
     active = view_layer.objects.active in outputs
     show_again(source, outputs, journal)
     follow(source, outputs, journal)
+    if len(outputs) == 1:
+        follow_collections(source, outputs[0], journal)
+    cautions = []
+    for output in outputs:
+        cautions += lost_with(output, source)
+        if source.library is None:
+            take_properties(source, output, journal, over=True)
+        cautions += hand_over(output, source, journal)
     journal.on_failure(_select_again, view_layer, view_layer.objects.active, _selected(outputs, view_layer))
     for output in outputs:
         discard_output(output, journal)
@@ -134,6 +148,7 @@ def _restore_source(source, outputs, view_layer, journal: Journal) -> None:
         select(source, True, view_layer, journal)
     if active and in_view_layer(source, view_layer):
         make_active(source, view_layer, journal)
+    return cautions
 
 
 def _selected(objects, view_layer) -> list[bpy.types.Object]:
@@ -161,8 +176,7 @@ def discard_output(output: bpy.types.Object, journal: Journal) -> None:
 def _remove_with_mesh(obj: bpy.types.Object) -> None:
     mesh = obj.data
     bpy.data.objects.remove(obj)
-    if mesh.users == 0:
-        bpy.data.meshes.remove(mesh)
+    remove_mesh_if_unused(mesh)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -175,16 +189,11 @@ def _restore_in_place(obj: bpy.types.Object, journal: Journal) -> None:
         copy = obj.data
         _restore_slots(obj, journal, of_object_only=True)
         journal.set(obj, "data", record.shared_mesh)
-        journal.later(_remove_if_unused, copy)
+        journal.later(remove_mesh_if_unused, copy)
     else:
         _restore_slots(obj, journal)
         restore_attributes(obj, journal)
     clear_record(obj, journal)
-
-
-def _remove_if_unused(mesh: bpy.types.Mesh) -> None:
-    if mesh.users == 0:
-        bpy.data.meshes.remove(mesh)
 
 
 def _restore_slots(obj: bpy.types.Object, journal: Journal, of_object_only: bool = False) -> None:

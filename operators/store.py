@@ -17,7 +17,7 @@ from .in_place import check_names, keeps_names, store_in_place
 from .journal import Journal
 from .local_mesh import fingerprint
 from .places import same_place
-from .refined import output_name, store_refined
+from .refined import output_name, refined_to_keep, store_refined
 from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
 from .textured import Displays
@@ -69,10 +69,11 @@ def store(
         warnings += [_set_free(copy, journal) for _, obj in found for copy in _copies(obj)]
         for (target, obj), (_, baked) in zip(found, pairs, strict=True):
             # A second bake in place only needs new values; what the first one remembers stays true.
-            if not (output == "ORIGINAL" and keeps_names(obj, attributes)):
-                restore_object(obj, view_layer, journal)
+            kept = refined_to_keep(obj, target) if output == "REFINED" else None
+            if kept is None and not (output == "ORIGINAL" and keeps_names(obj, attributes)):
+                warnings += restore_object(obj, view_layer, journal)
             if output == "REFINED":
-                baked_objects.append(store_refined(obj, target, baked, attributes, displays, view_layer, journal))
+                baked_objects.append(store_refined(obj, target, baked, attributes, displays, view_layer, journal, kept))
             else:
                 store_in_place(obj, target, baked, attributes, displays, journal)
                 baked_objects.append(obj)
