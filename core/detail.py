@@ -32,6 +32,9 @@ from .subdivision import Faces, conforming_faces
 from .surfaces import Surfaces
 from .surroundings import Surroundings
 
+MOST_ALONE = 0.5
+"""Share of the faces up to which those of split shells are made anew alone: taking them out and joining them costs."""
+
 MOST_ROUNDS = 8
 """Rounds of splitting; each halves the faces at a shadow's border."""
 
@@ -221,7 +224,8 @@ def light_up_in_detail(
 class _ShownFaces:
     """Faces that are split from round to round.
 
-    Shells of which no face is split, such as most dense meshes, are looked at once; only the others are made anew.
+    Shells of which no face is split, such as most dense meshes, are looked at once; of the others, only those split in
+    a round are made anew, unless they are most of them.
 
     Attributes
     ----------
@@ -272,9 +276,9 @@ class _ShownFaces:
 
     def split(self, nodes: Ints) -> None:
         """Split leaves, and gather light at the new vertices."""
-        new = np.zeros(len(self._changed_shells), dtype=bool)
-        new[self._surfaces.shell_of_triangle[self.tree.triangle[nodes]]] = True
-        new &= ~self._changed_shells
+        split = np.zeros(len(self._changed_shells), dtype=bool)
+        split[self._surfaces.shell_of_triangle[self.tree.triangle[nodes]]] = True
+        new = split & ~self._changed_shells
         if new.any():
             more = self._first.part(new[self._shell_of_node[self._first.faces.node]])
             self._changed_shells |= new
@@ -284,13 +288,19 @@ class _ShownFaces:
                 self._first = first.part(kept)
             del first
             self._changed = changed.with_others(every, more, self.tree)
+        others = ~split[self._surfaces.shell_of_triangle[self._changed.faces.triangle]]
+        few = np.count_nonzero(others) > (1.0 - MOST_ALONE) * len(others)
         self.tree.split(nodes)
-        faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
-        self._changed = self._updated(faces)
+        if few:
+            faces = conforming_faces(self._surfaces, self.tree, split)
+            updated = self._updated(self._changed.part(~others), faces)
+            self._changed = self._changed.with_others(others, updated, self.tree)
+        else:
+            faces = conforming_faces(self._surfaces, self.tree, self._changed_shells)
+            self._changed = self._updated(self._changed, faces)
 
-    def _updated(self, faces: Faces) -> Lit:
-        """Gather at the receivers that there were not, and take the others from what is known."""
-        known = self._changed
+    def _updated(self, known: Lit, faces: Faces) -> Lit:
+        """Gather at the receivers of the faces that are not known, and take the others from what is."""
         face, side = wanted_sides(faces, self._surfaces, self._lit)
         places = receivers(self._surfaces, faces, face, side)
         old = known.places

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from radiosity_bake.core import detail
 from radiosity_bake.core.bake import EFFORTS, bake
 from radiosity_bake.core.rows import BYTES_PER_RAY
 from radiosity_bake.core.scene import Scene, surface_mesh
@@ -54,6 +55,12 @@ def test_the_same_bake_gives_the_same_bytes_whatever_the_threads(method):
     assert same_bytes(two, again)
     for key in ("patches", "vertices", "rays", "iterations", "residual", "energy", "rounds"):
         assert one.report[key] == two.report[key]
+
+
+@pytest.mark.parametrize("most_alone", [0.0, 1.0])
+def test_it_makes_no_difference_which_faces_are_made_anew(most_alone, room_scene, room_draft, monkeypatch):
+    monkeypatch.setattr(detail, "MOST_ALONE", most_alone)
+    assert same_bytes(room_draft, bake(room_scene, BakeSettings(quality="DRAFT", minimum_size=0.15)))
 
 
 def test_another_seed_changes_the_values_within_their_noise(room_scene, room_draft):
