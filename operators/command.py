@@ -17,6 +17,7 @@ from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUT
 from .animation import FRAME_OUTPUTS, bake_frames, files_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
 from .files import check_spared, check_writable, files_in_use, is_whole_blend, replaced
+from .missing_links import missing_links
 from .naming import named
 from .participants import is_stamp, rendered_objects
 from .record import source_of
@@ -281,7 +282,7 @@ def _objects(names: list[str] | None, context: bpy.types.Context) -> list[bpy.ty
     if names is None:
         meshes = [obj for obj in rendered_objects(context.view_layer) if shows_surfaces(obj) and not is_stamp(obj)]
         if not meshes:
-            raise CommandError("The scene has nothing with faces that renders")
+            raise CommandError(". ".join(["The scene has nothing with faces that renders", *missing_links()]))
         return sorted(meshes, key=lambda obj: obj.name_full)
     objects = []
     for name in names:

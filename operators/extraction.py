@@ -10,6 +10,7 @@ import bpy
 from ..core.errors import NothingToBakeError
 from ..core.scene import Scene
 from .drivers import failing_drivers
+from .missing_links import missing_links
 from .participants import shown_as_rendered
 from .places import Outputs, outputs_by_source, same_place, shows_place, sources_in_place, sources_shown
 from .record import HIDDEN_SOURCE
@@ -59,7 +60,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
     NothingToBakeError
         When none of `objects` has faces that render and can be baked.
     """
-    warnings: list[str] = []
+    warnings = missing_links()
     skipped: dict[Reason, list[str]] = {}
     wanted = wanted_objects(context.scene, objects, output, skipped)
     outputs = outputs_by_source()

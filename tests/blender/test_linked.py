@@ -4,6 +4,7 @@
 
 import bpy
 import pytest
+from radiosity_bake.operators.command import main
 
 from tests.blender.making import (
     add_collection,
@@ -143,3 +144,49 @@ def test_a_local_object_with_a_linked_mesh_and_material_leaves_them_alone(tmp_pa
         assert differences(without_places(before), without_places(of_other_files(file_state()))) == []
     assert bpy.ops.radiosity.restore() == {"FINISHED"}
     assert bpy.data.objects["Local"].data == mesh
+
+
+@pytest.fixture
+def without_library(tmp_path):
+    """Open a file that links a collection and an object of a library which was deleted since."""
+    parts = add_collection("Parts")
+    for name in ("Chair", "Table"):
+        add_cube(name, collection=parts)
+    parts = linked_from_library(tmp_path, "collections", "Parts")
+    instance = add_object("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", parts
+    bpy.context.scene.collection.objects.link(parts.objects["Chair"])
+    add_cube("Room")
+    path = str(tmp_path / "room.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    (tmp_path / "library.blend").unlink()
+    bpy.ops.wm.open_mainfile(filepath=path)
+
+
+@pytest.mark.usefixtures("without_library")
+def test_a_library_that_is_gone_is_named_with_what_is_missing():
+    select_also(bpy.data.objects["Room"])
+    bake_selected("REFINED")
+    (warning,) = report()["warnings"]
+    assert warning.startswith('The linked file "')
+    assert warning.endswith('library.blend" could not be read, so "Chair", "Parts" from it are left out')
+
+
+@pytest.mark.usefixtures("without_library")
+def test_the_command_names_a_library_that_is_gone_when_nothing_is_left(tmp_path, capsys):
+    bpy.data.objects.remove(bpy.data.objects["Room"])
+    bpy.data.objects.remove(bpy.data.objects["Instance"])
+    assert main(["--output", str(tmp_path / "baked.blend")]) == 1
+    assert 'library.blend" could not be read' in capsys.readouterr().err
+
+
+def test_what_a_library_no_longer_has_is_named(linked, tmp_path):
+    add_cube("Room", select=True)
+    path = str(tmp_path / "room.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "library.blend"))
+    bpy.ops.wm.open_mainfile(filepath=path)
+    bake_selected("REFINED")
+    (warning,) = report()["warnings"]
+    assert 'library.blend" has changed, so "Linked" from it is left out' in warning
