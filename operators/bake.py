@@ -17,6 +17,7 @@ from .attributes import attributes_of, attributes_to_be
 from .doors import TwoDoors, Watch, run_to_end, way_to_object_mode
 from .extraction import Extraction, extract
 from .job import Bake
+from .naming import joined
 from .record import source_of
 from .sets import without_sets
 from .settings import bake_settings
@@ -121,6 +122,7 @@ def shown_report(
     """Return the report of the core with what the Blender side adds; `read` and `stored` are its seconds."""
     seconds = {"extract": read, **result.report.get("seconds", {}), "store": stored}
     seconds["total"] = seconds.get("total", 0.0) + seconds["extract"] + seconds["store"]
+    names = {part.name for part in (*extraction.scene.meshes, *extraction.scene.lamps)}
     return {
         **result.report,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
@@ -128,7 +130,7 @@ def shown_report(
         "objects": [obj.name for obj in objects],
         "evaluated_by_blender": list(extraction.evaluated),
         "exposure": exposure,
-        "warnings": [*extraction.warnings, *result.report.get("warnings", ()), *cautions],
+        "warnings": [*extraction.warnings, *joined(result.report.get("warnings", ()), names), *cautions],
     }
 
 

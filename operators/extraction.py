@@ -16,7 +16,7 @@ from .places import Outputs, outputs_by_source, same_place, shows_place, sources
 from .record import HIDDEN_SOURCE
 from .scene_reader import SceneReader
 from .targets import Target
-from .wanted import Reason, nothing_to_bake, skip_missing, wanted_objects
+from .wanted import Reason, nothing_to_bake, skip_missing, skipped_sentences, wanted_objects
 from .world import rendered_world, world_light
 
 
@@ -77,7 +77,7 @@ def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], out
     skip_missing(wanted, reader, skipped)
     if not targets:
         raise NothingToBakeError(nothing_to_bake(skipped))
-    warnings += [f'"{name}" was skipped: it {why.singular}' for why, names in skipped.items() for name in names]
+    warnings += skipped_sentences(skipped)
     sky = world_light(world if view_layer.use_sky else None, context.scene.frame_current)
     warnings += reader.warnings()
     warnings += [f'World "{world.name}": {note}' for note in sky.notes]

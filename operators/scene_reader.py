@@ -25,7 +25,8 @@ from .places import Outputs
 from .record import BAKED_IN_PLACE
 from .targets import Part, Target, joined_glow, joined_mesh
 
-_UNSUPPORTED = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
+UNSUPPORTED_TYPES = {"CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL", "GPENCIL"}
+"""Types of objects that show something in renders which is no mesh."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,10 +150,7 @@ class SceneReader:
 
     def warnings(self) -> list[str]:
         """Return a sentence for everything that was left out or guessed."""
-        sentences = [
-            f'Material "{material}" of {named(users)}: {note}'
-            for (material, note), users in self._colouring.users_of_note.items()
-        ]
+        sentences = self._notes_on_materials()
         sentences += [f"Lamp {named(users)}: {note}" for note, users in self._users_of_lamp_note.items()]
         if self._left_out:
             names = named(self._left_out, most=None)
@@ -180,6 +178,18 @@ class SceneReader:
         ]
         return sentences
 
+    def _notes_on_materials(self) -> list[str]:
+        """Return one sentence for each note, however many materials it is on: copies have the same."""
+        materials: dict[str, dict[str, None]] = {}
+        users: dict[str, dict[str, None]] = {}
+        for (material, note), of_both in self._colouring.users_of_note.items():
+            materials.setdefault(note, {})[material] = None
+            users.setdefault(note, {}).update(of_both)
+        return [
+            f"Material{'s' if len(of_note) > 1 else ''} {named(of_note)} of {named(users[note])}: {note}"
+            for note, of_note in materials.items()
+        ]
+
     def evaluated(self) -> list[str]:
         """Return a sentence for each material that Blender evaluated, and one on lamps."""
         sentences = [
@@ -197,7 +207,7 @@ class SceneReader:
                 continue
             obj = instance.object
             original = obj.original
-            if obj.type in _UNSUPPORTED:
+            if obj.type in UNSUPPORTED_TYPES:
                 self._left_out[original.name] = None
             if _has_hair(original):
                 self._hairy[original.name] = None

@@ -9,11 +9,11 @@ import bpy
 
 from .naming import named
 from .record import source_of
-from .scene_reader import SceneReader
+from .scene_reader import UNSUPPORTED_TYPES, SceneReader
 from .targets import shows_surfaces
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Reason:
     """Why an object cannot be baked, to follow "it" and several names."""
 
@@ -21,6 +21,8 @@ class Reason:
     plural: str
 
 
+_NOTHING_TO_COLOUR = Reason("is not a mesh", "are not meshes")
+"""Of lamps, cameras, empties and the like, which are selected along with meshes and nobody takes for such."""
 _NOT_A_MESH = Reason("is not a mesh", "are not meshes")
 _LINKED = Reason(
     "is linked from another file; Refined Mesh bakes it, or make it local",
@@ -51,7 +53,8 @@ def wanted_objects(
     linked_collections = {collection for collection in scene.collection.children_recursive if collection.library}
     for obj in dict.fromkeys(_that_makes_the_faces(source_of(obj)) for obj in objects):
         if not shows_surfaces(obj):
-            skipped.setdefault(_NOT_A_MESH, []).append(obj.name)
+            why = _NOT_A_MESH if obj.type in UNSUPPORTED_TYPES else _NOTHING_TO_COLOUR
+            skipped.setdefault(why, []).append(obj.name)
         elif not obj.radiosity_settings.receives:
             skipped.setdefault(_NOT_RECEIVING, []).append(obj.name)
         elif obj.library is not None and output == "ORIGINAL":
@@ -96,5 +99,17 @@ def nothing_to_bake(skipped: dict[Reason, list[str]]) -> str:
     """Return why nothing can be baked."""
     if not skipped:
         return "Select the meshes to bake"
+    # What nobody takes for a mesh is told only if there was nothing else.
+    skipped = {why: names for why, names in skipped.items() if why is not _NOTHING_TO_COLOUR} or skipped
     clauses = [f"{named(names)} {why.singular if len(names) == 1 else why.plural}" for why, names in skipped.items()]
     return f"None of the selected objects can be baked: {', and '.join(clauses)}"
+
+
+def skipped_sentences(skipped: dict[Reason, list[str]]) -> list[str]:
+    """Return a sentence for each reason for which something that could have been meant was not baked."""
+    return [
+        f"{named(names)} {'was skipped: it' if len(names) == 1 else 'were skipped: they'} "
+        f"{why.singular if len(names) == 1 else why.plural}"
+        for why, names in skipped.items()
+        if why is not _NOTHING_TO_COLOUR
+    ]

@@ -442,9 +442,22 @@ def test_only_meshes_without_faces_is_an_error_that_names_them():
         extracted(add_mesh("Points", [(0, 0, 0)], []))
 
 
-def test_a_selected_object_that_is_not_a_mesh_is_named():
-    extraction = extracted(add_object("Empty", None), add_cube())
-    assert any('"Empty"' in warning and "not a mesh" in warning for warning in extraction.warnings)
+def test_what_is_no_mesh_is_named_when_nothing_else_is_selected():
+    with pytest.raises(NothingToBakeError, match='"Empty" is not a mesh'):
+        extracted(add_object("Empty", None))
+
+
+def test_copies_of_a_material_are_named_in_one_sentence():
+    for number in range(5):
+        paint = node_material(f"Paint {number}", "ShaderNodeBsdfDiffuse", Color=(0.5, 0.5, 0.5, 1.0))
+        bump = paint.node_tree.nodes.new("ShaderNodeBump")
+        paint.node_tree.links.new(bump.outputs["Normal"], paint.node_tree.nodes["Diffuse BSDF"].inputs["Normal"])
+        add_cube(f"Cube {number}", materials=[paint])
+    (warning,) = extracted(bpy.data.objects["Cube 0"]).warnings
+    assert warning == (
+        'Materials "Paint 0", "Paint 1", "Paint 2" and 2 more of "Cube 0", "Cube 1", "Cube 2" and 2 more: '
+        "its bump is left out; the mesh's own normals count"
+    )
 
 
 def test_a_selected_object_that_does_not_render_is_named():

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The bake operator: one clear sentence for whatever cannot be done, and nothing changed then."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
 from radiosity_bake.core.errors import Cancelled
+from radiosity_bake.core.progress import no_progress
 from radiosity_bake.operators.bake import bake_objects, profile, reason_not_to_bake
 from radiosity_bake.operators.doors import Watch
 from radiosity_bake.operators.settings import bake_settings
@@ -105,11 +108,49 @@ def test_a_scene_without_light_is_an_error_and_nothing_changes():
 
 
 @pytest.mark.usefixtures("quick_bake")
-def test_other_objects_in_the_selection_are_skipped_and_named():
-    add_object("Empty", None, select=True)
+def test_what_renders_and_is_no_mesh_is_named_when_it_is_selected():
+    add_object("Smoke", bpy.data.volumes.new("Smoke"), select=True)
     add_cube(select=True)
     bake_selected()
-    assert any('"Empty"' in warning for warning in report()["warnings"])
+    assert any('"Smoke" was skipped: it is not a mesh' in warning for warning in report()["warnings"])
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_lamps_and_cameras_that_are_selected_along_with_meshes_are_no_warnings():
+    add_object("Empty", None, select=True)
+    add_object("Key", bpy.data.lights.new("Key", "POINT"), select=True)
+    add_object("Eye", bpy.data.cameras.new("Eye"), select=True)
+    add_object("Bones", bpy.data.armatures.new("Bones"), select=True)
+    add_cube(select=True)
+    bake_selected()
+    assert report()["warnings"] == []
+
+
+@pytest.mark.usefixtures("quick_bake")
+def test_objects_that_are_skipped_for_one_reason_are_one_sentence():
+    for name in "ABCDE":
+        add_mesh(name, [(0, 0, 0)], [], select=True)
+    add_cube(select=True)
+    bake_selected()
+    assert report()["warnings"] == ['"A", "B", "C" and 2 more were skipped: they have no faces']
+
+
+def test_what_the_core_says_of_several_objects_is_one_sentence(run_instead):
+    def warned(scene, settings, progress=no_progress):
+        result = position_bake(scene, settings, progress)
+        told = [f"{mesh.name}: {index + 2} triangles without area left out" for index, mesh in enumerate(scene.meshes)]
+        told += [f"{scene.meshes[0].name}: light reaches only the back of its faces", "The memory: limit"]
+        return replace(result, report={**result.report, "warnings": told})
+
+    for name in ("A", "B: with a colon", "C", "D", "E"):
+        add_cube(name, select=True)
+    run_instead(warned)
+    bake_selected()
+    assert report()["warnings"] == [
+        '"A", "B: with a colon", "C" and 2 more: 20 triangles without area left out',
+        "A: light reaches only the back of its faces",
+        "The memory: limit",
+    ]
 
 
 @pytest.mark.usefixtures("quick_bake")
