@@ -5,10 +5,12 @@
 import json
 import time
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import bpy
 
+from ..core.errors import NoLightError
 from ..core.progress import ProgressCallback, no_progress
 from ..core.result import BakeResult
 from ..core.scene import Scene
@@ -17,7 +19,8 @@ from .attributes import attributes_of, attributes_to_be
 from .doors import TwoDoors, Watch, run_to_end, way_to_object_mode
 from .extraction import Extraction, extract
 from .job import Bake
-from .naming import joined
+from .naming import joined, named
+from .participants import lamps_out_of_renders
 from .record import source_of
 from .sets import without_sets
 from .settings import bake_settings
@@ -60,7 +63,7 @@ class SingleBake:
         self._objects.clear()
         check_storable(self._extraction, attributes_to_be(self._settings, self._extraction.scene))
         self._read = time.perf_counter() - began
-        return self._extraction.scene, self._settings, trace
+        return self._extraction.scene, self._settings, partial(_trace, unlit=lamps_out_of_renders(self._context))
 
     def take(self, result: BakeResult) -> None:
         """Keep the light."""
@@ -144,6 +147,16 @@ def profile(seconds: dict[str, float], told: dict[str, Any]) -> dict[str, float]
     blender = (seconds["extract"] + seconds["store"]) / total
     shares = {"ray_library": rays, "arrays": max(0.0, 1.0 - rays - blender), "blender": blender}
     return {name: round(share, 4) for name, share in shares.items()}
+
+
+def _trace(scene: Scene, settings: BakeSettings, progress: ProgressCallback, *, unlit: list[str]) -> BakeResult:
+    """Return the bake of a scene; where nothing emits light, lamps that do not render are named."""
+    try:
+        return trace(scene, settings, progress)
+    except NoLightError as error:
+        if not unlit:
+            raise
+        raise NoLightError(f"{error}. {named(unlit)} {'is' if len(unlit) == 1 else 'are'} hidden in renders") from error
 
 
 def trace(scene: Scene, settings: BakeSettings, progress: ProgressCallback) -> BakeResult:

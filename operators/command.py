@@ -16,7 +16,7 @@ from ..core.progress import Progress
 from ..core.settings import DATA_TYPES, DOMAINS, LIGHTS, MATERIALS, METHODS, OUTPUTS, QUALITIES, BakeSettings
 from .animation import FRAME_OUTPUTS, bake_frames, files_of, summary_of
 from .bake import bake_objects, counted, ray_library_problem
-from .files import check_spared, check_writable, files_in_use, is_whole_blend, replaced
+from .files import check_spared, check_writable, files_in_use, is_whole_blend, newer_blender, replaced
 from .missing_links import missing_links
 from .naming import named
 from .participants import is_stamp, rendered_objects
@@ -174,6 +174,10 @@ def _open(path: Path) -> None:
     try:
         bpy.ops.wm.open_mainfile(filepath=str(path.resolve()))
     except RuntimeError as error:
+        newer = newer_blender(path)
+        if newer is not None:
+            here = f"this is {bpy.app.version[0]}.{bpy.app.version[1]}"
+            raise CommandError(f"{path} could not be read: it was saved by {newer}; {here}") from error
         raise CommandError(f"{path} could not be read: {_sentence(error)}") from error
 
 

@@ -3,6 +3,7 @@
 """Files that appear whole or not at all: written under a temporary name in their folder, then renamed."""
 
 import os
+import re
 import secrets
 import stat
 from collections.abc import Iterable, Iterator
@@ -18,9 +19,13 @@ _ZSTANDARD, _END_OF_SEEKABLE = b"\x28\xb5\x2f\xfd", b"\xb1\xea\x92\x8f"
 _END_OF_BLEND = b"ENDB"
 """Name of the last block of one that is not compressed, which has but a header."""
 _TAIL = 64
+_HEADER_SIZE = 32
+"""Bytes, more than the header of a .blend file has."""
 _BLEND = ".blend"
 _LONGEST_PATH = 1022
 """Bytes: Blender cuts a path off after 1023, without a word, and saves to one that is a character longer."""
+_HEADER = re.compile(rb"BLENDER(?:[-_][vV](\d)(\d\d)|\d\d[-_]\d\d[vV](\d\d)(\d\d))")
+"""How a .blend file that is not compressed begins, to 4.5 and since 5.0: with the version of Blender that saved it."""
 _ANYONE_WRITES = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 """Marks of a folder; on Windows they tell nothing of who may write."""
 
@@ -125,6 +130,36 @@ def is_whole_blend(path: Path) -> bool:
         file.seek(-min(_TAIL, path.stat().st_size), os.SEEK_END)
         end = file.read()
     return end.endswith(_END_OF_SEEKABLE) if start == _ZSTANDARD else _END_OF_BLEND in end
+
+
+def newer_blender(path: Path) -> str | None:
+    """Return which newer Blender than this seems to have saved a file that cannot be read, or None.
+
+    What is compressed tells its version only where Python can take Zstandard apart, as that of Blender can.
+    """
+    with path.open("rb") as file:
+        start = file.read(_HEADER_SIZE)
+    if start.startswith(_ZSTANDARD):
+        unpacked = _unpacked(path)
+        if unpacked is None:
+            return "a newer Blender" if is_whole_blend(path) else None
+        start = unpacked
+    found = _HEADER.match(start)
+    if found is None:
+        return None
+    major, minor = (int(number) for number in found.groups() if number is not None)
+    return f"Blender {major}.{minor}" if (major, minor) > bpy.app.version[:2] else None
+
+
+def _unpacked(path: Path) -> bytes | None:
+    """Return how a compressed file begins, None where that cannot be told."""
+    try:
+        import zstandard
+    except ImportError:
+        return None
+    with path.open("rb") as file, suppress(zstandard.ZstdError):
+        return zstandard.ZstdDecompressor().stream_reader(file).read(_HEADER_SIZE)
+    return None
 
 
 def _temporary(path: Path) -> Path:

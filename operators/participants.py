@@ -23,6 +23,12 @@ def rendered_objects(view_layer: bpy.types.ViewLayer) -> set[bpy.types.Object]:
     return {obj for obj in found if not hidden_in_render(obj) and not is_output(obj)}
 
 
+def lamps_out_of_renders(context: bpy.types.Context) -> list[str]:
+    """Return the names of lamps with some power that the scene has and a rendering of the view layer does not show."""
+    shown = rendered_objects(context.view_layer)
+    return [obj.name for obj in context.scene.objects if obj.type == "LIGHT" and obj not in shown and obj.data.energy]
+
+
 def is_stamp(obj: bpy.types.Object) -> bool:
     """Return whether `obj` is there to be instanced on its parent's vertices or faces, and does not render itself."""
     return obj.parent is not None and obj.parent.instance_type in {"VERTS", "FACES"}

@@ -274,6 +274,24 @@ def test_a_file_that_is_no_blend_file_is_a_sentence(tmp_path, monkeypatch, capsy
     assert ". is not a file" in capsys.readouterr().err
 
 
+def test_a_file_of_a_newer_blender_is_said_to_be_one(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = Path("room.blend")
+    for header, said in (
+        (b"BLENDER17-01v9902", "it was saved by Blender 99.2; this is"),
+        (b"BLENDER-v999", "it was saved by Blender 9.99; this is"),
+        # What a compressed one is of, the module cannot tell; whole, it can only be newer.
+        (b"\x28\xb5\x2f\xfd" + bytes(64) + b"\xb1\xea\x92\x8f", "it was saved by a newer Blender; this is"),
+    ):
+        path.write_bytes(header + bytes(200) if header.startswith(b"B") else header)
+        assert main(["--output", "baked.blend"], "room.blend") == 1
+        assert said in capsys.readouterr().err
+    for broken in (b"", b"BLENDER-v300", b"\x28\xb5\x2f\xfd" + bytes(64)):
+        path.write_bytes(broken)
+        assert main(["--output", "baked.blend"], "room.blend") == 1
+        assert "saved by" not in capsys.readouterr().err
+
+
 @pytest.mark.usefixtures("quick_bake")
 def test_the_longest_name_that_there_is_can_be_written(room):
     name = "n" * 249 + ".blend"

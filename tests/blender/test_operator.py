@@ -107,6 +107,16 @@ def test_a_scene_without_light_is_an_error_and_nothing_changes():
     assert file_state() == before
 
 
+def test_a_lamp_that_is_hidden_in_renders_is_named_where_nothing_emits_light():
+    add_cube(select=True)
+    for name, energy in (("Key", 10.0), ("Broken", 0.0)):
+        lamp = bpy.data.lights.new(name, "POINT")
+        lamp.energy = energy
+        add_object(name, lamp).hide_render = True
+    with pytest.raises(RuntimeError, match=r'Nothing in the scene emits light.*\. "Key" is hidden in renders'):
+        bpy.ops.radiosity.bake()
+
+
 @pytest.mark.usefixtures("quick_bake")
 def test_what_renders_and_is_no_mesh_is_named_when_it_is_selected():
     add_object("Smoke", bpy.data.volumes.new("Smoke"), select=True)
