@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The guide tells of everything that a user can set, press and read."""
 
+import ast
 import dataclasses
 import re
 from pathlib import Path
@@ -21,6 +22,18 @@ def test_every_setting_is_explained_and_shown_in_the_script(name):
     shown = bpy.context.scene.radiosity.bl_rna.properties[name].name.removesuffix(" (MiB)")
     assert f"| **{shown}** |" in GUIDE
     assert re.search(rf"^settings\.{name} = ", GUIDE, re.MULTILINE)
+
+
+def test_the_script_changes_no_default_and_names_every_choice():
+    block = GUIDE.partition("## From a script")[2].partition("```python")[2].partition("```")[0]
+    given = dict(re.findall(r"^settings\.(\w+) = (.*)$", block, re.MULTILINE))
+    properties = bpy.context.scene.radiosity.bl_rna.properties
+    for field in dataclasses.fields(BakeSettings):
+        value, _, comment = given[field.name].partition("#")
+        assert ast.literal_eval(value.strip()) == field.default, field.name
+        if properties[field.name].type == "ENUM":
+            choices = re.findall(r"[A-Z]{4,}|[A-Z]{3}\b", comment)
+            assert choices == [item.identifier for item in properties[field.name].enum_items], field.name
 
 
 def test_every_operator_is_named():
