@@ -90,8 +90,9 @@ class RadiositySettings(bpy.types.PropertyGroup):
     threshold: bpy.props.FloatProperty(
         name="Threshold",
         description=(
-            "A surface is split while it receives more than this share of the light that leaves another one. "
-            "Smaller values give smaller patches where surfaces are near each other. Shadows follow the quality"
+            "How finely surfaces that are near each other are split for the light that goes between them. "
+            "Smaller: finer colours in corners, and a longer bake. It is the share of another surface's light above "
+            "which one is split. Shadows are as fine as Quality makes them, whatever this is"
         ),
         default=DEFAULTS.threshold,
         min=0.000001,
@@ -105,8 +106,8 @@ class RadiositySettings(bpy.types.PropertyGroup):
     minimum_size: bpy.props.FloatProperty(
         name="Minimum Size",
         description=(
-            "Surfaces are split only while their pieces stay longer than this. Halve it to sharpen shadows. "
-            "0 chooses it from the size of the scene and the quality"
+            "No face is split into pieces shorter than this. Halve it for sharper shadows, double it for fewer "
+            "vertices. 0 chooses it from the size of the scene and the quality"
         ),
         subtype="DISTANCE",
         unit="LENGTH",
@@ -118,14 +119,14 @@ class RadiositySettings(bpy.types.PropertyGroup):
     )
     method: bpy.props.EnumProperty(
         name="Method",
-        description="How surfaces are split",
+        description="Whether vertices go where the light needs them, or everywhere alike",
         items=METHOD_ITEMS,
         default=DEFAULTS.method,
         options=set(),
     )
     quality: bpy.props.EnumProperty(
         name="Quality",
-        description="How many rays are traced, how closely vertices follow the light, and the automatic minimum size",
+        description="How clean the light and how sharp the shadows are: more rays, more vertices and a longer bake",
         items=QUALITY_ITEMS,
         default=DEFAULTS.quality,
         options=set(),

@@ -10,6 +10,7 @@ register, unregister = bpy.utils.register_classes_factory(
     (
         panel.VIEW3D_PT_radiosity,
         panel.VIEW3D_PT_radiosity_output,
+        panel.VIEW3D_PT_radiosity_subdivision,
         panel.VIEW3D_PT_radiosity_sampling,
         object_panel.VIEW3D_PT_radiosity_object,
         panel.VIEW3D_PT_radiosity_result,

@@ -22,7 +22,7 @@ class _InSidebar:
 
 
 class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
-    """Settings, the bake button or the progress of the bake, and the way back."""
+    """The settings that every bake asks for, its button or its progress, and the way back."""
 
     bl_label = "Radiosity Bake"
 
@@ -38,9 +38,6 @@ class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
         column.active = running is None
         column.prop(settings, "quality")
         column.prop(settings, "output")
-        column.prop(settings, "method")
-        column.prop(settings, "threshold")
-        column.prop(settings, "minimum_size")
 
         if running is not None:
             _draw_progress(layout, running.latest)
@@ -54,6 +51,18 @@ class VIEW3D_PT_radiosity(_InSidebar, bpy.types.Panel):
         layout.operator_menu_enum("radiosity.bake_frames", "frame_output", icon="RENDER_ANIMATION")
         layout.operator("radiosity.relight", icon="SHADING_RENDERED")
         layout.operator("radiosity.restore", icon="LOOP_BACK")
+
+
+class VIEW3D_PT_radiosity_subdivision(_InSidebar, bpy.types.Panel):
+    """How surfaces are split, for those whom the quality alone does not serve."""
+
+    bl_label = "Subdivision"
+    bl_parent_id = "VIEW3D_PT_radiosity"
+    bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads it from the class
+
+    def draw(self, context):
+        """Draw the panel."""
+        _draw_settings(self.layout, context, ("minimum_size", "method", "threshold"))
 
 
 class VIEW3D_PT_radiosity_sampling(_InSidebar, bpy.types.Panel):
