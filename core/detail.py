@@ -45,6 +45,10 @@ WIDTHS_ON_STRIP = 4.0
 FACES_ALONG_STRIP = 1024.0
 """Unless they are shorter than this part of the strip."""
 
+MOST_LEVELS_ON_STRIP = 4
+"""Splits of a coarse patch from which on none is made for the strip that it is on: each makes faces half as long, but
+twice as many across, for which nothing asks. A patch limit leaves hairs in few and long pieces."""
+
 
 @dataclass(frozen=True)
 class FaceSizes:
@@ -160,7 +164,7 @@ def light_up_in_detail(
 
     def split_on_strips(first_new: int) -> Ints:
         leaf = np.unique(np.concatenate([lit.faces.node[chosen] for lit, chosen in shown.parts()]))
-        leaf = leaf[shown.tree.sizes(leaf) > sizes.patches]
+        leaf = leaf[(shown.tree.sizes(leaf) > sizes.patches) & (shown.tree.level[leaf] < MOST_LEVELS_ON_STRIP)]
         triangle = shown.tree.triangle[leaf]
         shells = np.zeros(len(surfaces.closed), dtype=bool)
         shells[surfaces.shell_of_triangle[triangle]] = True

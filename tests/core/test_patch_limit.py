@@ -75,6 +75,13 @@ def test_what_few_patches_exchange_is_not_left_to_chance():
         assert abs(result.report["energy"]["imbalance"]) < LARGEST_IMBALANCE
 
 
+def test_a_hair_that_the_limit_left_in_few_pieces_is_not_split_into_a_lawn():
+    hair = exact.rectangle("hair", (-1, 0, 0), (2, 0, 0), (0, 1e-6, 0))
+    result, _ = baked(Scene((hair,), np.ones(3)), 10)
+    # Its eight pieces may be 256 faces each, and some more to fit; without an end there were half a million.
+    assert result.report["triangles"] < 10_000
+
+
 def test_the_parts_of_patches_are_as_many_as_dividing_them_makes():
     tree = transport_of(dense(cornell_box(), 3), smallest=0.2, clustered=True).tree
     for _ in range(3):
