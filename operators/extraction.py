@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 
 from ..core.errors import NothingToBakeError
 from ..core.scene import Scene
@@ -45,6 +46,8 @@ class Extraction:
     view_layer: str
 
 
+# What is no number in a file goes on to the core, which names it; numpy has nothing to add on the console.
+@np.errstate(all="ignore")
 def extract(context: bpy.types.Context, objects: Iterable[bpy.types.Object], output: str = "REFINED") -> Extraction:
     """Read everything that renders, with `objects` marked to be baked.
 

@@ -474,3 +474,14 @@ def test_what_is_transparent_all_over_is_not_baked_and_hides_nothing():
     assert extraction.warnings == ('"Glass" was skipped: it is transparent all over',)
     glass = next(mesh for mesh in extraction.scene.meshes if mesh.name == "Glass")
     assert glass.clear.all() and not glass.baked
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_numbers_that_are_none_go_on_without_a_word_on_the_console():
+    broken, turned = add_cube("broken"), add_cube("turned")
+    broken.data.vertices[0].co.x = math.inf
+    turned.matrix_world[0][0] = math.nan
+    light = bpy.data.lights.new("endless", "POINT")
+    light.energy, light.color = math.inf, (1.0, 0.0, 1.0)
+    add_object("endless", light)
+    assert {mesh.name for mesh in extracted(broken, turned).scene.meshes} == {"broken", "turned"}
