@@ -117,12 +117,21 @@ def follow(source: bpy.types.Object, outputs: Iterable[bpy.types.Object], journa
         return taken
     if not taken and is_animated(outputs[0]):
         return False
-    before, now = _transform(source), _transform(outputs[0])
-    if is_bent_by_parent(source) and outputs[0].parent == source.parent:
-        now["parent_type"] = source.parent_type
-    journal.on_failure(_set_transform, source, before)
-    _set_transform(source, now)
+    journal.on_failure(_set_transform, source, _transform(source))
+    stand_in_place(source, outputs[0])
     return True
+
+
+def stand_in_place(source: bpy.types.Object, output: bpy.types.Object) -> None:
+    """Give an original, or a copy of it, the transform and the parent of a refined object."""
+    if not shows_place(output):
+        # Its mesh is in world space, and it is where it was moved from there.
+        source.matrix_world = output.matrix_world @ source.matrix_world
+        return
+    values = _transform(output)
+    if is_bent_by_parent(source) and output.parent == source.parent:
+        values["parent_type"] = source.parent_type
+    _set_transform(source, values)
 
 
 def _take_what_moves(source: bpy.types.Object, output: bpy.types.Object, journal: Journal) -> bool:

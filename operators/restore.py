@@ -3,6 +3,7 @@
 """Bringing the originals back exactly as they were before a bake."""
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import bpy
 from mathutils import Matrix
@@ -22,8 +23,9 @@ from .changes import (
     set_eye,
 )
 from .journal import Journal
-from .places import follow, follow_collections, outputs_by_source, same_place, show_again, shows_place
+from .places import follow, follow_collections, outputs_by_source, same_place, show_again, shows_place, stand_in_place
 from .record import BAKED_IN_PLACE, HIDDEN_SOURCE, is_output, source_of
+from .refined import output_name
 
 
 class RADIOSITY_OT_restore(bpy.types.Operator):
@@ -113,8 +115,13 @@ def restore_object(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer, journ
 
 
 def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
-    """Return the refined meshes that stand for `source`: one, or more if the user duplicated it."""
-    return [obj for obj in bpy.data.objects if is_output(obj) and obj.radiosity.source == source]
+    """Return the refined meshes that stand for `source`: one, or more if the user duplicated it, copies last."""
+
+    def is_likely_made_later(output: bpy.types.Object) -> tuple[bool, int]:
+        return output.name != output_name(source), output.session_uid
+
+    found = [obj for obj in bpy.data.objects if is_output(obj) and obj.radiosity.source == source]
+    return sorted(found, key=is_likely_made_later)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -122,21 +129,50 @@ def outputs_of(source: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def _restore_source(source, outputs, view_layer, journal: Journal) -> list[str]:
-    selected = bool(_selected(outputs, view_layer))
-    active = view_layer.objects.active in outputs
     show_again(source, outputs, journal)
-    follow(source, outputs, journal)
-    if len(outputs) == 1:
-        follow_collections(source, outputs[0], journal)
-    cautions = []
-    for output in outputs:
-        cautions += lost_with(output, source)
-        if source.library is None:
-            take_properties(source, output, journal, over=True)
-        cautions += hand_over(output, source, journal)
+    follow(source, outputs[:1], journal)
+    for output in outputs[:1]:
+        follow_collections(source, output, journal)
+    shown = [_Shown.of(output, view_layer) for output in outputs]
     journal.on_failure(_select_again, view_layer, view_layer.objects.active, _selected(outputs, view_layer))
-    for output in outputs:
+    _show_as_before(source, view_layer, journal)
+    cautions = []
+    for number, (output, state) in enumerate(zip(outputs, shown, strict=True)):
+        heir = source if number == 0 else _copy_at(source, output, journal)
+        cautions += lost_with(output, source)
+        if heir.library is None:
+            take_properties(heir, output, journal, over=True)
+        cautions += hand_over(output, heir, journal)
         discard_output(output, journal)
+        if state.selected:
+            select(heir, True, view_layer, journal)
+        if state.active and in_view_layer(heir, view_layer):
+            make_active(heir, view_layer, journal)
+    return cautions
+
+
+class _Shown(NamedTuple):
+    """How a refined object was, before it is taken out of the scene."""
+
+    selected: bool
+    active: bool
+
+    @classmethod
+    def of(cls, output: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> "_Shown":
+        return cls(bool(_selected([output], view_layer)), view_layer.objects.active == output)
+
+
+def _copy_at(source: bpy.types.Object, output: bpy.types.Object, journal: Journal) -> bpy.types.Object:
+    """Return a copy of `source` in the place of a refined object that the user duplicated, linked as that one is."""
+    copy = source.copy()
+    journal.on_failure(bpy.data.objects.remove, copy)
+    stand_in_place(copy, output)
+    for collection in output.users_collection:
+        collection.objects.link(copy)
+    return copy
+
+
+def _show_as_before(source: bpy.types.Object, view_layer: bpy.types.ViewLayer, journal: Journal) -> None:
     record = source.radiosity
     if record.kind == HIDDEN_SOURCE:
         hide_render, hide_viewport, hide_eye = record.hide_render, record.hide_viewport, record.hide_eye
@@ -144,11 +180,6 @@ def _restore_source(source, outputs, view_layer, journal: Journal) -> list[str]:
         journal.set(source, "hide_render", hide_render)
         journal.set(source, "hide_viewport", hide_viewport)
         set_eye(source, hide_eye, view_layer, journal)
-    if selected:
-        select(source, True, view_layer, journal)
-    if active and in_view_layer(source, view_layer):
-        make_active(source, view_layer, journal)
-    return cautions
 
 
 def _selected(objects, view_layer) -> list[bpy.types.Object]:

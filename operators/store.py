@@ -17,7 +17,7 @@ from .in_place import check_names, keeps_names, store_in_place
 from .journal import Journal
 from .local_mesh import fingerprint
 from .places import same_place
-from .refined import output_name, refined_to_keep, store_refined
+from .refined import refined_to_keep, store_refined
 from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
 from .textured import Displays
@@ -175,11 +175,7 @@ def _find(targets: list[Target], view_layer: bpy.types.ViewLayer) -> list[tuple[
 
 def _copies(source: bpy.types.Object) -> list[bpy.types.Object]:
     """Return what the user duplicated of the refined mesh of `source`: all that stand for it but one."""
-
-    def is_likely_made_later(output: bpy.types.Object) -> tuple[bool, int]:
-        return output.name != output_name(source), output.session_uid
-
-    return sorted(outputs_of(source), key=is_likely_made_later)[1:]
+    return outputs_of(source)[1:]
 
 
 def _set_free(copy: bpy.types.Object, journal: Journal) -> str:

@@ -266,3 +266,27 @@ def test_a_second_bake_that_cannot_be_stored_leaves_all_that_was_attached(table,
     assert differences(before, file_state()) == []
     assert (cup.parent, constraint.target) == (refined, refined)
     assert len(cube.constraints) == 0 and "mine" not in cube
+
+
+@pytest.mark.parametrize("own_mesh", [True, False])
+def test_restore_makes_originals_of_the_copies_of_a_refined_object(table, own_mesh):
+    cube, output = table
+    cube.modifiers.new("Bevel", "BEVEL")
+    copy = output.copy()
+    if own_mesh:
+        copy.data = output.data.copy()
+    room = add_collection("Room")
+    room.objects.link(copy)
+    copy.location.x, copy["mine"] = 9.0, 5
+    cup = child_of(copy)
+    before = place(copy), place(cup)
+    bpy.ops.radiosity.restore()
+    (twin,) = room.objects
+    assert twin.data == cube.data and twin.visible_get() and not twin.hide_render
+    assert (twin["mine"], cup.parent, twin.radiosity.kind) == (5, twin, "NONE")
+    assert [modifier.name for modifier in twin.modifiers] == ["Bevel"]
+    assert place(twin) == pytest.approx(before[0], abs=1e-6)
+    assert place(cup) == pytest.approx(before[1], abs=1e-6)
+    assert cube.location.x == 1.0 and "mine" not in cube
+    assert sorted(obj.name for obj in bpy.data.objects) == ["Cup", "Table", "Table.001"]
+    assert [mesh.name for mesh in bpy.data.meshes] == ["Table"]
