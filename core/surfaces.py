@@ -200,10 +200,13 @@ class Surfaces:
 
     def doubled(self) -> NDArray[np.bool_]:
         """Triangles on a side of which others may lie, (t,): solids bury what they stand on."""
-        shell, places = self.shell_of_triangle, np.sort(self.place_of_point[self.triangles], axis=1)
-        alike, _ = share_planes(self.normals, self.points[self.triangles], shell, self.extent)
-        _, number, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
-        result: NDArray[np.bool_] = alike | self._back_to_back() | (count[number.ravel()] > 1)
+        corners = self.points[self.triangles]
+        alike, opposed = share_planes(self.normals, corners, self.shell_of_triangle, self.extent)
+        result: NDArray[np.bool_] = alike | self._back_to_back() | _repeated(self.place_of_point[self.triangles])
+        # A solid that is there again, turned inside out, is no sheet, and nothing stands on it.
+        facing = np.flatnonzero(opposed)
+        _, place = np.unique(corners[facing].reshape(-1, 3), axis=0, return_inverse=True)
+        result[facing] |= _repeated(place.reshape(-1, 3))
         return result
 
     def blockers(self) -> dict[frozenset[int], NDArray[np.bool_]]:
@@ -481,3 +484,10 @@ def _shading_normals(corner_normals: Floats, normals: Floats) -> Floats:
     unit = normalized(np.nan_to_num(corner_normals))
     wrong = np.einsum("tkx,tx->tk", unit, normals) <= 0.0
     return np.where(wrong[..., None], normals[:, None, :], unit)
+
+
+def _repeated(places: Ints) -> NDArray[np.bool_]:
+    """Whether triangles of the places (t, 3) have the same three as another, (t,)."""
+    _, number, count = np.unique(np.sort(places, axis=1), axis=0, return_inverse=True, return_counts=True)
+    repeated: NDArray[np.bool_] = count[number.ravel()] > 1
+    return repeated
