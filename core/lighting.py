@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -34,10 +35,13 @@ from .subdivision import Faces
 from .surfaces import Surfaces
 from .workers import Workers
 
-LOOKS, LOOKS_BESIDE_WALLS = 2, 6
-"""Times that gather rays are looked up again in the light of the vertices: each is one more bounce on the finest mesh,
-and a third changes less than the rays' noise. But what patches under a thin wall let through to its dark side becomes
-less with each."""
+FEWEST_LOOKS, FEWEST_LOOKS_BESIDE_WALLS, MOST_LOOKS = 2, 6, 24
+"""Times that gather rays are looked up again in the light of the vertices: each is one more bounce on the finest mesh.
+What patches under a thin wall let through to its dark side becomes less with each, and so does what a patch has too
+much of where two surfaces meet at a sharp angle: light between them goes to and fro many times."""
+
+SETTLED = 0.005
+"""Change of the light at the vertices by one more look, RMS relative to their mean, up to which it is the last."""
 
 LARGEST_IMBALANCE = 0.03
 """Share of the power that may be missing, or too much, before the report warns of it."""
@@ -173,10 +177,22 @@ def looked_again(
     """Look the gather rays up again in the light of the vertices; returns the faces' light and what rays saw last."""
     left = left_emission(surfaces, patches.emitters)
     interpolated = InterpolatedRadiance(on_faces, light.reflectance, left, light.seen, light.translucence)
-    for _ in range(LOOKS_BESIDE_WALLS if on_faces.beside_walls else LOOKS):
+    fewest = FEWEST_LOOKS_BESIDE_WALLS if on_faces.beside_walls else FEWEST_LOOKS
+    for look in range(1, MOST_LOOKS + 1):
+        before = shown.gathered
         radiance = Radiance.of(patches.cells, interpolated.at(shown), surfaces.world)
-        shown = replace(shown, gathered=look_again(workers, radiance, shown.gathered))
+        shown = replace(shown, gathered=look_again(workers, radiance, before))
+        if look >= fewest and _change(before, shown.gathered) <= SETTLED:
+            break
     return shown, radiance
+
+
+def _change(before: Gathered, after: Gathered) -> float:
+    """How far the light at vertices that something sees has changed, RMS relative to their mean; 0 in the dark."""
+    seen = np.flatnonzero(~after.hidden)
+    light = after.irradiance[seen]
+    square, mean = float(((light - before.irradiance[seen]) ** 2).sum()), float(light.sum())
+    return math.sqrt(square * light.size) / mean if mean > 0.0 else 0.0
 
 
 def relit(workers: Workers, emitters: Emitters, radiance: Radiance, gathered: Gathered) -> Gathered:
