@@ -37,6 +37,7 @@ from .gather import (
     with_direct,
 )
 from .interpolation import PlacesOnFaces, receivers_of_nodes
+from .kept_rays import KeptRays
 from .lighting import (
     Story,
     TracedCuts,
@@ -137,12 +138,28 @@ MOST_TIMES_RAYS = 16
 """Times as many rays, and points that tell what covers it, that a patch gets at most where the patch limit left few: as
 what they miss does not average out, together they get the rays of as many as the quality wants."""
 
+KEPT_RAYS_SHARE = 0.25
+"""Share of the memory limit up to which what rays met is kept for the bake of the next frame."""
+
 MOST_RAYS = 2**25
 """Rays of the coarsest patches: above it each gets fewer, as the rays of many patches together average out."""
 
 
-def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_progress) -> BakeResult:
+def bake(
+    scene: Scene,
+    settings: BakeSettings,
+    progress: ProgressCallback = no_progress,
+    before: KeptRays | None = None,
+    keep_rays: bool = False,
+) -> BakeResult:
     """Bake the light of `scene` into the meshes that ask for it.
+
+    Parameters
+    ----------
+    before : KeptRays or None
+        What rays met when the scene was another, of which most may be as it was: that is not traced again.
+    keep_rays : bool
+        Whether the result holds what rays met, for the bake of the next frame.
 
     Raises
     ------
@@ -156,12 +173,19 @@ def bake(scene: Scene, settings: BakeSettings, progress: ProgressCallback = no_p
     clock.start("Preparing", 0.0, 0.02)
     surfaces = join(scene)
     check_light(surfaces)
-    with closing(_ray_scene(surfaces, surfaces.seen, surfaces.shadow, settings)) as rays:
-        return _bake(scene, surfaces, rays, settings, clock)
+    kept = int(KEPT_RAYS_SHARE * settings.memory_limit * 2**20) if keep_rays else 0
+    with closing(_ray_scene(surfaces, surfaces.seen, surfaces.shadow, settings, before, kept)) as rays:
+        result = _bake(scene, surfaces, rays, settings, clock)
+        return replace(result, kept_rays=rays.kept())
 
 
 def _ray_scene(
-    surfaces: Surfaces, seen: NDArray[np.bool_], shadow: NDArray[np.bool_], settings: BakeSettings
+    surfaces: Surfaces,
+    seen: NDArray[np.bool_],
+    shadow: NDArray[np.bool_],
+    settings: BakeSettings,
+    before: KeptRays | None = None,
+    most_kept: int = 0,
 ) -> RayScene:
     return RayScene(
         surfaces.traced_points(),
@@ -171,6 +195,8 @@ def _ray_scene(
         shadow,
         surfaces.blockers(),
         surfaces.transmittance,
+        before,
+        most_kept,
     )
 
 
@@ -333,6 +359,7 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
         "relit": False,
         "patches": len(tree.patches()),
         "rays": rays.rays,
+        "rays_known": rays.known,
         "rays_by_kind": {
             "walks": walked,
             "form_factors": rays_of_rows,

@@ -456,7 +456,7 @@ def _looked(
     lift = receivers.lift[part].astype(np.float32)
     origins = np.repeat(transport.rays.local(receivers.points[part]) + lift * np.float32(OFFSET), rays, axis=0)
     even = np.tile(even_chances(rays), len(normals)) if transport.surfaces.transmittance is not None else None
-    found = scene.first_hits(origins, directions, even)
+    found = scene.first_hits(origins, directions, even, rays)
     if not np.any(np.abs(normals - lift) > FLAT):
         return found, slice(0)
     # A smooth shading normal leans over its face: what it asks for from below the face is dark, as in Cycles.

@@ -237,7 +237,7 @@ def _relight(kept: KeptTransport, scene: Scene, surfaces: Surfaces, workers: Wor
     checks = replace(kept.checks, gathered=relit(workers, patches.emitters, radiance, kept.checks.gathered))
 
     clock.start("Reconstructing", 0.9, 1.0)
-    counts = {**kept.story.counts, "relit": True, "rays": 0, "seconds_in_ray_library": 0.0}
+    counts = {**kept.story.counts, "relit": True, "rays": 0, "rays_known": 0, "seconds_in_ray_library": 0.0}
     counts["rays_by_kind"] = dict.fromkeys(counts["rays_by_kind"], 0)
     story = replace(kept.story, counts=counts)
     parts = partial(parts_of, kept, scene, workers)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from .scene import Floats, Ints
 
 if TYPE_CHECKING:
+    from .kept_rays import KeptRays
     from .relight import KeptTransport, NotKept
 
 
@@ -80,16 +81,19 @@ class BakeResult:
     """All baked meshes and the report.
 
     `report` holds only what JSON can: `relit` (whether `relight` made it), `patches`, `vertices`, `triangles`, `rays`
-    (total), `rays_by_kind` (`walks` that find the lit sides, `form_factors`, `patches` for covers and direct light,
-    `gather`), `seconds` (by stage, with `total`), `seconds_in_ray_library` (summed over `threads`), `iterations`,
-    `residual`, `converged`, `estimated_error` (relative RMS), `form_factor_standard_error` (of a form factor as large
-    as the threshold, in the median), `energy` (`emitted`, `from_world`, `from_lamps`, `reflected`, `absorbed`,
-    `escaped` in W, and `imbalance`), `minimum_size`, `minimum_face_size` (None where faces are not split), `rounds` (a
-    list, one entry a refinement round), `ended` (why refinement ended), `settings` and `warnings` (sentences).
+    (total), `rays_known` (not traced: those of another bake had met what they meet), `rays_by_kind` (`walks` that find
+    the lit sides, `form_factors`, `patches` for covers and direct light, `gather`), `seconds` (by stage, with `total`),
+    `seconds_in_ray_library` (summed over `threads`), `iterations`, `residual`, `converged`, `estimated_error` (relative
+    RMS), `form_factor_standard_error` (of a form factor as large as the threshold, in the median), `energy` (`emitted`,
+    `from_world`, `from_lamps`, `reflected`, `absorbed`, `escaped` in W, and `imbalance`), `minimum_size`,
+    `minimum_face_size` (None where faces are not split), `rounds` (a list, one entry a refinement round), `ended` (why
+    refinement ended), `settings` and `warnings` (sentences).
 
-    `kept` is what `relight` needs, or why it is not there; None where it was not asked for.
+    `kept` is what `relight` needs, or why it is not there; None where it was not asked for. `kept_rays` is what the
+    bake of the next frame takes; None where it was not asked for, or would take more than its share of the memory.
     """
 
     meshes: tuple[BakedMesh, ...]
     report: dict[str, Any]
     kept: KeptTransport | NotKept | None = None
+    kept_rays: KeptRays | None = None

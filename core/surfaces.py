@@ -46,6 +46,9 @@ HAIR = 8e-7
 """How much solids are made smaller for rays, in units of the extent that the scene would have if it ended with them: 13
 steps between neighbouring float32, and less than rays start off their surface."""
 
+HAIR_STEPS = 4
+"""Steps for each doubling of that extent in which it grows with them: up to a fifth more than it need be."""
+
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
@@ -167,8 +170,13 @@ class Surfaces:
     def _hair_of(self, triangles: Ints) -> float:
         """How much some triangles (k, 3) are moved for rays, scene units."""
         middle, extent = frame(self.points[self.triangles.ravel()])
-        # On a wide ground, rays are as fine near its middle as the coordinates there, which are small.
-        return HAIR * min(2.0 * float(np.abs(self.points[triangles] - middle).max(initial=0.0)), extent)
+        # On a wide ground, rays are as fine near its middle as the coordinates there, which are small. In steps, as the
+        # points of all solids would move when one of them does.
+        reach = 2.0 * float(np.abs(self.points[triangles] - middle).max(initial=0.0))
+        if reach == 0.0:
+            return 0.0
+        steps = np.ceil(HAIR_STEPS * np.log2(reach / extent))
+        return HAIR * extent * float(min(np.exp2(steps / HAIR_STEPS), 1.0))
 
     @cached_property
     def _of_solids(self) -> Ints:

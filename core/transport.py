@@ -191,7 +191,7 @@ class Transport:
                 )
             chances = shifted(patterns.chances[:, None], hashed(part, 1, self.seed + 72)).astype(np.float32)
             hits, root, weights, distance = self.look(
-                origins.reshape(-1, 3), directions.reshape(-1, 3), chances.ravel()
+                origins.reshape(-1, 3), directions.reshape(-1, 3), chances.ravel(), count
             )
             hits = hits.reshape(-1, count)
             return Rows(
@@ -229,9 +229,9 @@ class Transport:
         return self.rays.local(a), ((b - a) * scale).astype(np.float32), ((c - a) * scale).astype(np.float32)
 
     def look(
-        self, origins: Singles, directions: Singles, chances: Singles | None = None
+        self, origins: Singles, directions: Singles, chances: Singles | None = None, each: int = 1
     ) -> tuple[NDArray[np.int32], NDArray[np.int32], Singles, Singles]:
-        """Trace rays (n, 3) in the ray library's coordinates; `chances` as `RayScene.first_hits` takes them.
+        """Trace rays (n, 3) in the ray library's coordinates; `chances` and `each` as `RayScene.first_hits` takes them.
 
         Returns
         -------
@@ -242,7 +242,7 @@ class Transport:
         weights : (n, 2) float32
         distance : (n,) float32
         """
-        found = self.rays.first_hits(origins, directions, chances)
+        found = self.rays.first_hits(origins, directions, chances, each)
         missed = found.triangle < 0
         triangle = np.maximum(found.triangle, 0)
         weights = found.weights()
@@ -393,7 +393,7 @@ class Transport:
             pattern, angle = patterns.choose(key, self.seed + 33)
             directions = (patterns.directions[pattern] @ frames(axis, angle)).reshape(-1, 3)
             start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * OFFSET).astype(np.float32)
-            found = self.rays.first_hits(np.repeat(start, rays, axis=0), directions)
+            found = self.rays.first_hits(np.repeat(start, rays, axis=0), directions, each=rays)
             short = found.distance.reshape(-1, count, rays) < reach[elements[first:last]][:, None, None]
             result: Floats = short.mean(axis=2)
             return result
@@ -441,7 +441,7 @@ class Transport:
             start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * PROBES_FROM * OFFSET).astype(
                 np.float32
             )
-            met = self.look(start, -axis.astype(np.float32))[0].astype(np.int64)
+            met = self.look(start, -axis.astype(np.float32), each=PROBES)[0].astype(np.int64)
             # What solids bury is no share of what is left.
             buried = met == BURIED
             if self.cover is not None:

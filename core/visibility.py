@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from .errors import RayLibraryError
 from .geometry import frame
+from .kept_rays import LEAST_ROW, MOVED, Changes, KeptRays, KeptRows, Keys, RowsToKeep, keys_of
 from .sampling import Singles
 from .scene import Floats, Ints
 from .transmittance import Transmittance
@@ -26,6 +27,10 @@ OFFSET = 2e-6
 scaled to [-0.5, 0.5], where neighbouring float32 differ by 6e-8 at most: 33 of these steps, well above the few that an
 intersection is off by, and below a gap of 0.1 mm in a scene of 50 m."""
 
+
+COARSER, WITHIN = 1.5, 1.000001
+"""Times the extent of the scene up to which the coordinates of a bake before serve it, as all of them must for its rays
+to be known; and how far points may lie out of these, by rounding."""
 
 FAINTEST = np.float32(1e-4)
 """Share of the light below which what comes through many sheets counts as nothing."""
@@ -81,6 +86,16 @@ class Hits:
     back: NDArray[np.bool_]
     directions: NDArray[np.float32]
 
+    def codes(self) -> NDArray[np.int32]:
+        """Triangles and sides in one: twice the triangle, and 1 more for its back, (n,); below 0 for none."""
+        codes: NDArray[np.int32] = 2 * self.triangle + self.back
+        return codes
+
+    def take(self, which: Ints, others: Hits) -> None:
+        """Put others in place of some, but for the directions."""
+        for name in ("triangle", "u", "v", "distance", "back"):
+            getattr(self, name)[which] = getattr(others, name)
+
     def weights(self) -> NDArray[np.float32]:
         """The two weights side by side, (n, 2)."""
         return np.stack([self.u, self.v], axis=1)
@@ -111,6 +126,108 @@ class _Triangles:
         return known
 
 
+class _Moved:
+    """What became of some of the triangles since an earlier bake, as the ray library has it.
+
+    Attributes
+    ----------
+    now : (triangles before + 1,) int32
+        The number of each triangle now; `MOVED` for those that are not where they were, or were not in question. The
+        last is -1, for none.
+    came, gone : _Triangles or None
+        What is where nothing was, and what is not where it was: None where there is none.
+    """
+
+    def __init__(self, before: Ints, corners_before: Singles, after: Ints, corners: Singles) -> None:
+        changes = Changes.between(corners_before, corners)
+        self.now = np.full(int(before.max(initial=-1)) + 2, MOVED, dtype=np.int32)
+        stayed = np.flatnonzero(changes.now >= 0)
+        self.now[before[stayed]] = after[changes.now[stayed]]
+        self.now[-1] = -1
+        self.are_all = len(changes.gone) == len(before)
+        self.came = self._triangles(corners[changes.came])
+        self.gone = self._triangles(corners_before[changes.gone])
+        self._number = after[changes.came].astype(np.int32)
+
+    @staticmethod
+    def _triangles(corners: Singles) -> _Triangles | None:
+        count = len(corners)
+        if count == 0:
+            return None
+        return _Triangles(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3), np.ones(count, dtype=bool))
+
+    def number(self, met: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Numbers among all triangles of those that came and were met."""
+        return self._number[met]
+
+
+class _Memory:
+    """What rays met in the bake before, if there was one, and what they meet in this one.
+
+    Parameters
+    ----------
+    before : KeptRays or None
+    most : int
+        Bytes to keep; 0 for nothing.
+    centre, extent : of the ray library's coordinates
+    points : (v, 3) float32
+        In these.
+    triangles : (t, 3) int
+    seen, shadow : (t,) bool
+        Triangles that rays meet, and those that hide things wholly.
+    with_normals : bool
+        Whether rays may go on behind a triangle, for which its normal is needed.
+    """
+
+    def __init__(
+        self,
+        before: KeptRays | None,
+        most: int,
+        centre: Floats,
+        extent: float,
+        points: Singles,
+        triangles: Ints,
+        seen: NDArray[np.bool_],
+        shadow: NDArray[np.bool_],
+        with_normals: bool,
+    ) -> None:
+        self._centre, self._extent = centre, extent
+        self._seen, self._shadow = np.flatnonzero(seen), np.flatnonzero(shadow)
+        self._seen_corners = points[triangles[self._seen]]
+        self._shadow_corners = self._seen_corners if (seen == shadow).all() else points[triangles[self._shadow]]
+        self.normals = np.zeros((len(triangles), 3), dtype=np.float32) if with_normals else None
+        self.to_keep = RowsToKeep(most) if most else None
+        self.hits: dict[int, KeptRows] = {}
+        self.clear: dict[int, KeptRows] = {}
+        if before is None or before.extent != extent or (before.centre != centre).any():
+            return
+        if with_normals and before.normals is None:
+            return
+        self.of_seen = _Moved(before.seen, before.seen_corners, self._seen, self._seen_corners)
+        self.of_shadow = _Moved(before.shadow, before.shadow_corners, self._shadow, self._shadow_corners)
+        self.hits = {} if self.of_seen.are_all else before.hits
+        self.clear = {} if self.of_shadow.are_all else before.clear
+        if self.normals is not None and before.normals is not None:
+            stayed = np.flatnonzero(self.of_seen.now[:-1] >= 0)
+            self.normals[self.of_seen.now[stayed]] = before.normals[stayed]
+
+    def kept(self) -> KeptRays | None:
+        """What there is to keep; None where it would be too much."""
+        if self.to_keep is None or self.to_keep.are_too_many:
+            return None
+        return KeptRays(
+            self._centre,
+            self._extent,
+            self._seen,
+            self._seen_corners,
+            self._shadow,
+            self._shadow_corners,
+            self.normals,
+            self.to_keep.taken("hits"),
+            self.to_keep.taken("clear"),
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class _Blockers:
     """What hides things: triangles that do so wholly, and those that let some of the light through, if any do."""
@@ -134,12 +251,18 @@ class RayScene:
         Other triangles that hide what is asked of `hidden_by`, by the numbers of their meshes.
     transmittance : Transmittance or None
         What goes through triangles.
+    before : KeptRays or None
+        What rays met in another bake, which is not to be traced again.
+    most_kept : int
+        Bytes of what rays meet in this one that are kept; 0 keeps nothing.
 
     Attributes
     ----------
     workers : Workers
     rays : int
         Rays traced so far.
+    known : int
+        Rays that were not, as others had met before what they meet; of them, only what moved was asked.
     seconds : float
         Time spent inside the ray library, summed over threads.
     scale : float
@@ -155,11 +278,13 @@ class RayScene:
         shadow: NDArray[np.bool_] | None = None,
         blockers: dict[frozenset[int], NDArray[np.bool_]] | None = None,
         transmittance: Transmittance | None = None,
+        before: KeptRays | None = None,
+        most_kept: int = 0,
     ) -> None:
         self.workers = Workers(threads)
-        self._centre, extent = frame(points[triangles.ravel()])
+        self._centre, extent = _frame(points[triangles.ravel()], before)
         self.scale = 1.0 / extent if extent > 0.0 else 1.0
-        self.rays = 0
+        self.rays = self.known = 0
         self.seconds = 0.0
         self._counting = threading.Lock()
         chosen = [np.ones(len(triangles), dtype=bool) if mask is None else mask for mask in (seen, shadow)]
@@ -179,6 +304,25 @@ class RayScene:
         self._of_sight = self._of_shadow if (chosen[0] == chosen[1]).all() else blocking(chosen[0])
         self._whole: RayScene | None = None
         self._of_blockers = {which: blocking(mask) for which, mask in (blockers or {}).items()}
+        self._memory: _Memory | None = None
+        self._throws_shadows = True
+        if most_kept or before is not None:
+            some = transmittance.some if transmittance is not None else np.zeros(len(triangles), dtype=bool)
+            self._memory = _Memory(
+                before,
+                most_kept,
+                self._centre,
+                extent,
+                self.local(points),
+                triangles,
+                chosen[0],
+                chosen[1] & ~some,
+                transmittance is not None,
+            )
+
+    def kept(self) -> KeptRays | None:
+        """What rays met, for another bake; None where that is not wanted, or would be too much."""
+        return self._memory.kept() if self._memory is not None else None
 
     def hidden_by(self, blockers: frozenset[int] | None) -> RayScene:
         """The same scene, in which these meshes alone hide things in `visible`; None for all that throw shadows."""
@@ -186,12 +330,14 @@ class RayScene:
             return self
         other = copy.copy(self)
         other._of_shadow, other._whole = self._of_blockers[blockers], self._whole or self
+        other._throws_shadows = False
         return other
 
     def of_sight(self) -> RayScene:
         """The same scene, in which `visible` asks for what `first_hits` meets, whether it throws shadows or not."""
         other = copy.copy(self)
         other._of_shadow, other._whole = self._of_sight, self._whole or self
+        other._throws_shadows = self._throws_shadows and self._of_sight is self._of_shadow
         return other
 
     def in_channels(self) -> tuple[RayScene, ...]:
@@ -214,19 +360,30 @@ class RayScene:
         return ((points - self._centre) * self.scale).astype(np.float32)
 
     def _run(
-        self, triangles: _Triangles, origins: NDArray[np.float32], directions: NDArray[np.float32], **options: Any
+        self,
+        triangles: _Triangles,
+        origins: NDArray[np.float32],
+        directions: NDArray[np.float32],
+        known: bool = False,
+        **options: Any,
     ) -> Any:
+        """Trace rays, which do not count where they are `known` and only what moved is asked."""
         start = time.perf_counter()
         answer = triangles.run(origins, directions, **options)
         elapsed = time.perf_counter() - start
         whole = self._whole or self
         with self._counting:
             whole.seconds += elapsed
-            whole.rays += len(origins)
+            if not known:
+                whole.rays += len(origins)
         return answer
 
     def first_hits(
-        self, origins: NDArray[np.float32], directions: NDArray[np.float32], chances: Singles | None = None
+        self,
+        origins: NDArray[np.float32],
+        directions: NDArray[np.float32],
+        chances: Singles | None = None,
+        each: int = 1,
     ) -> Hits:
         """Trace rays (n, 3) from origins in local coordinates, lifted off their surface by `OFFSET`.
 
@@ -235,8 +392,10 @@ class RayScene:
         chances : (n,) float32, 0..1, or None
             Of each ray: it goes on through what lets a larger share of the light through, or is reflected by glass.
             None has all go through what is more clear than opaque.
+        each : int
+            Rays that belong together, such as those of one receiver: they are kept, and found again, as a row.
         """
-        hits, normals = self._first_hits(origins, directions)
+        hits, normals = self._first_hits_of_rows(origins, directions, each)
         if self.transmittance is None:
             return hits
         left = np.full(len(origins), 0.5, dtype=np.float32) if chances is None else chances.copy()
@@ -247,9 +406,57 @@ class RayScene:
     def _first_hits(self, origins: Singles, directions: Singles) -> tuple[Hits, Singles]:
         """What rays meet, and the normals there, (n, 3), of any length."""
         answer = self._run(self._of_seen, origins, directions, query="INTERSECT", output=True)
-        back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
-        hits = Hits(self._of_seen.number(answer["primID"]), answer["u"], answer["v"], answer["tfar"], back, directions)
-        return hits, answer["Ng"]
+        return _hits_of(answer, self._of_seen.number(answer["primID"]), directions), answer["Ng"]
+
+    def _first_hits_of_rows(self, origins: Singles, directions: Singles, each: int) -> tuple[Hits, Singles]:
+        """The same, but what rays met before is asked for what moved alone; what all meet is kept."""
+        memory = self._memory
+        if memory is None or each < LEAST_ROW or len(directions) == 0:
+            return self._first_hits(origins, directions)
+        keys = keys_of(origins, directions, each)
+        if each in memory.hits:
+            hits, normals = self._known_hits(memory, origins, directions, keys, each)
+        else:
+            hits, normals = self._first_hits(origins, directions)
+        if memory.to_keep is not None:
+            # Whoever asked may change what they were given.
+            columns = (values.reshape(-1, each).copy() for values in (hits.codes(), hits.u, hits.v, hits.distance))
+            memory.to_keep.add("hits", each, keys, *columns)
+        if memory.normals is not None:
+            met = np.flatnonzero(hits.triangle >= 0)
+            memory.normals[hits.triangle[met]] = normals[met]
+        return hits, normals
+
+    def _known_hits(
+        self, memory: _Memory, origins: Singles, directions: Singles, keys: Keys, each: int
+    ) -> tuple[Hits, Singles]:
+        """What rays meet, those of known rows by what they met before, and normals there where they are needed."""
+        rows = memory.hits[each]
+        known, place = rows.find(keys)
+        code, u, v, distance = (answer[place].ravel() for answer in rows.answers)
+        moved = memory.of_seen
+        hits = Hits(moved.now[code >> 1], u, v, distance, code & 1 == 1, directions)
+        normals = np.zeros_like(directions) if memory.normals is None else memory.normals[np.maximum(hits.triangle, 0)]
+        again = np.repeat(~known, each) | (hits.triangle == MOVED)
+        left = np.flatnonzero(again)
+        self._count_known(len(directions) - len(left))
+        if moved.came is not None:
+            distance[left] = 0.0
+            limits = {"dists": distance, "query": "INTERSECT", "output": True}
+            answer = self._run(moved.came, origins, directions, known=True, **limits)
+            nearer = np.flatnonzero(answer["primID"] >= 0)
+            answer = {name: values[nearer] for name, values in answer.items()}
+            hits.take(nearer, _hits_of(answer, moved.number(answer["primID"]), directions[nearer]))
+            normals[nearer] = answer["Ng"]
+        found, found_normals = self._first_hits(origins[left], directions[left])
+        hits.take(left, found)
+        normals[left] = found_normals
+        return hits, normals
+
+    def _count_known(self, rays: int) -> None:
+        whole = self._whole or self
+        with self._counting:
+            whole.known += rays
 
     def _go_on(self, hits: Hits, normals: Singles, origins: Singles, chances: Singles) -> None:
         """Put in place of hits that let a ray through what it meets behind; `chances` are used up."""
@@ -311,15 +518,62 @@ class RayScene:
             The way from each origin to its targets.
         """
         starts = np.repeat(origins, toward.shape[1], axis=0)
-        # The ray library counts in lengths of the direction.
-        ends = np.ones(len(starts), dtype=np.float32)
-        answer: NDArray[np.int32] = self._run(
-            self._of_shadow.opaque, starts, toward.reshape(-1, 3), dists=ends, query="OCCLUDED"
-        )
-        clear = answer.reshape(toward.shape[:2]) < 0
+        clear = self._clear_of_rows(origins, starts, toward.reshape(-1, 3)).reshape(toward.shape[:2])
         if self._of_shadow.sheets is None:
             return clear
         return self._through(self._of_shadow.sheets, starts, toward.reshape(-1, 3), clear.ravel()).reshape(clear.shape)
+
+    def _clear(
+        self, starts: Singles, toward: Singles, triangles: _Triangles | None = None, known: bool = False
+    ) -> NDArray[np.bool_]:
+        """Whether none of some triangles, or of all that are opaque, hides the ends of rays (n,)."""
+        # The ray library counts in lengths of the direction.
+        limits = {"dists": np.ones(len(starts), dtype=np.float32), "query": "OCCLUDED"}
+        answer = self._run(triangles or self._of_shadow.opaque, starts, toward, known=known, **limits)
+        result: NDArray[np.bool_] = answer < 0
+        return result
+
+    def _clear_of_rows(self, origins: Singles, starts: Singles, toward: Singles) -> NDArray[np.bool_]:
+        """The same of rows of rays, but what was asked before is asked for what moved alone; all answers are kept.
+
+        Parameters
+        ----------
+        origins : (rows, 3) float32
+        starts : (n, 3) float32
+            The same for each ray.
+        """
+        memory, each = self._memory, len(starts) // max(len(origins), 1)
+        if memory is None or not self._throws_shadows or each < LEAST_ROW:
+            return self._clear(starts, toward)
+        keys = keys_of(origins, toward, each)
+        if each in memory.clear:
+            clear = self._known_clear(memory, starts, toward, keys, each)
+        else:
+            clear = self._clear(starts, toward)
+        if memory.to_keep is not None:
+            memory.to_keep.add("clear", each, keys, np.packbits(clear.reshape(-1, each), axis=1))
+        return clear
+
+    def _known_clear(
+        self, memory: _Memory, starts: Singles, toward: Singles, keys: Keys, each: int
+    ) -> NDArray[np.bool_]:
+        """Whether rays are clear, those of known rows by whether they were before."""
+        rows = memory.clear[each]
+        known, place = rows.find(keys)
+        clear = np.unpackbits(rows.answers[0][place], axis=1, count=each).ravel() > 0
+        again = np.repeat(~known, each)
+        moved = memory.of_shadow
+        if moved.gone is not None:
+            # What hid it is gone, but something else may hide it, too.
+            hidden = np.flatnonzero(~clear & ~again)
+            again[hidden] = ~self._clear(starts[hidden], toward[hidden], moved.gone, known=True)
+        if moved.came is not None:
+            free = np.flatnonzero(clear & ~again)
+            clear[free] = self._clear(starts[free], toward[free], moved.came, known=True)
+        left = np.flatnonzero(again)
+        self._count_known(len(starts) - len(left))
+        clear[left] = self._clear(starts[left], toward[left])
+        return clear
 
     def _through(
         self, sheets: _Triangles, origins: Singles, directions: Singles, clear: NDArray[np.bool_]
@@ -346,6 +600,21 @@ class RayScene:
             gone = np.minimum(gone[on] + answer["tfar"][on], np.float32(1.0))
             rows, way = rows[on], way[on]
         return result
+
+
+def _frame(points: Floats, before: KeptRays | None) -> tuple[Floats, float]:
+    """Centre and extent of the ray library's coordinates: those of a bake before, while all points are in them."""
+    centre, extent = frame(points)
+    if before is None or not extent <= before.extent <= COARSER * extent:
+        return centre, extent
+    within = (np.abs(points - before.centre) <= 0.5 * WITHIN * before.extent).all()
+    return (before.centre, before.extent) if within else (centre, extent)
+
+
+def _hits_of(answer: Any, triangle: NDArray[np.int32], directions: Singles) -> Hits:
+    """An answer of the ray library, with the triangles' numbers among all."""
+    back = np.einsum("nx,nx->n", directions, answer["Ng"]) > 0.0
+    return Hits(triangle, answer["u"], answer["v"], answer["tfar"], back, directions)
 
 
 def spread_of_rays(seen: NDArray[np.bool_] | NDArray[np.float32], share: Floats) -> Floats:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The Radiosity Bake authors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A range of frames, each baked: transport is traced again only when something moved, else the light alone is new.
+"""A range of frames, each baked: rays are traced again only where something moved, else the light alone is new.
 
 The light of all frames ends in one set of attributes a frame (`Radiosity.0001`, `Irradiance.0001`, ...), or each
 frame in a file of its own. The scene goes back to the frame where it was.
@@ -19,6 +19,7 @@ import numpy as np
 
 from ..core.darkness import darkness
 from ..core.errors import BakeError, Cancelled, NoLightError
+from ..core.kept_rays import KeptRays
 from ..core.progress import Progress, ProgressCallback, no_progress
 from ..core.relight import ChangedSceneError, KeptTransport, NotKept, relight
 from ..core.result import BakedMesh, BakeResult
@@ -91,10 +92,13 @@ class TracedFrame:
     Attributes
     ----------
     kept : KeptTransport or NotKept or None
+    rays : KeptRays or None
+        What they met.
     meshes : tuple of BakedMesh
     """
 
     kept: KeptTransport | NotKept | None
+    rays: KeptRays | None
     meshes: tuple[BakedMesh, ...]
 
 
@@ -144,6 +148,7 @@ class FrameRange:
         self._to_light = list(frames)
         self._dark: list[int] = []
         self._traced: TracedFrame | None = None
+        self._traced_anew = False
         self._read: tuple[Extraction, float] | None = None
         self._told: dict[int, dict[str, Any]] = {}
         self._written = 0
@@ -227,7 +232,9 @@ class FrameRange:
             self._put_aside(frame, result.report["ended"])
             return
         if traced:
-            self._traced = TracedFrame(result.kept, result.meshes)
+            self._traced_anew |= self._keeps_rays() and result.kept_rays is None
+            self._traced = TracedFrame(result.kept, result.kept_rays, result.meshes)
+            result = replace(result, kept_rays=None)
             # What is dark was left until there is light: a range of nothing else is a mistake.
             self._to_light, self._dark = [*self._dark, *self._to_light], []
         lit = LitFrame(frame, extraction, result, read)
@@ -236,6 +243,7 @@ class FrameRange:
             "traced": traced,
             "dark": dark,
             "rays": result.report.get("rays", 0),
+            "rays_known": result.report.get("rays_known", 0),
             "seconds": round(read + result.report.get("seconds", {}).get("total", 0.0), 4),
         }
         if self._files is None:
@@ -248,6 +256,8 @@ class FrameRange:
     def _light(self, frame: int, share: tuple[float, float]) -> Bake:
         """Return what lights a frame: relit if only colours changed since the one that was traced, else traced.
 
+        Of the rays, those are traced that may meet something else than they did then.
+
         Parameters
         ----------
         frame : int
@@ -255,6 +265,8 @@ class FrameRange:
             How much of the range is done before, and how much this is of it.
         """
         before, one_tracing, written = self._traced, self._one_tracing, self._written
+        rays = before.rays if before is not None else None
+        keep_rays = self._keeps_rays()
 
         def light(scene: Scene, settings: BakeSettings, progress: ProgressCallback) -> BakeResult:
             def told(message: Progress) -> None:
@@ -272,11 +284,15 @@ class FrameRange:
                 if before is not None and one_tracing:
                     raise FrameError(_why_not_relit(before.kept))
                 try:
-                    return trace(scene, settings, told)
+                    return trace(scene, settings, told, before=rays, keep_rays=keep_rays)
                 except NoLightError as why:
                     return darkness(scene, settings, why)
 
         return light
+
+    def _keeps_rays(self) -> bool:
+        """Whether frames may be traced after this one."""
+        return not self._one_tracing and len(self._frames) - len(self._told) > 1
 
     def _put_aside(self, frame: int, why: str) -> None:
         self._dark.append(frame)
@@ -356,6 +372,11 @@ class FrameRange:
         warnings = []
         if dark:
             warnings.append(f"Nothing emits light at {_and('frame', [*dark[:_NAMED], *others])}; it is black there")
+        if self._traced_anew and sum(told["traced"] for told in self._told.values()) > 1:
+            warnings.append(
+                "What the rays of a frame met was too much for the memory limit, so that all were traced anew at "
+                "each frame; raise it"
+            )
         if self._files is not None and self._settings.data_type == "BYTE" and self._settings.byte_maximum == 0.0:
             warnings.append("The bytes of each frame have an exposure of their own; set Byte Maximum to compare them")
         return warnings

@@ -159,9 +159,9 @@ def _trace(scene: Scene, settings: BakeSettings, progress: ProgressCallback, *, 
         raise NoLightError(f"{error}. {named(unlit)} {'is' if len(unlit) == 1 else 'are'} hidden in renders") from error
 
 
-def trace(scene: Scene, settings: BakeSettings, progress: ProgressCallback) -> BakeResult:
-    """Return the bake of a scene."""
-    return _core_bake()(scene, settings, progress)
+def trace(scene: Scene, settings: BakeSettings, progress: ProgressCallback, **options: Any) -> BakeResult:
+    """Return the bake of a scene, with options that the core's has beside the settings."""
+    return _core_bake()(scene, settings, progress, **options)
 
 
 def _core_bake():

@@ -58,7 +58,7 @@ else:
 
         given = []
 
-        def bake(scene, settings, progress):
+        def bake(scene, settings, progress, **_):
             given.append((scene, settings))
             return position_bake(scene, settings, progress)
 

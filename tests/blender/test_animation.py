@@ -92,6 +92,56 @@ def test_an_object_that_moves_is_traced_again(room):
     np.testing.assert_array_equal(values, fresh(floor, 3))
 
 
+def rays_of_frames():
+    return [(frame["rays"], frame["rays_known"]) for frame in report()["frames"]]
+
+
+def test_rays_are_traced_again_where_an_object_moved_and_not_elsewhere(room):
+    floor, box = room
+    move_the_box(box)
+    bake_range()
+    (_, none), relit, (again, known) = rays_of_frames()
+    assert none == 0
+    assert relit == (0, 0)
+    assert known > 0
+    fresh(floor, 3)
+    assert again + known == report()["rays"]
+
+
+def test_a_lamp_that_moves_leaves_what_rays_between_surfaces_meet(room):
+    floor, _ = room
+    lamp = bpy.data.objects["Lamp"]
+    for frame, x in ((1, 0.3), (2, 0.5), (3, 0.7)):
+        lamp.location.x = x
+        lamp.keyframe_insert("location", frame=frame)
+    assert bake_range() == [True, True, True]
+    values = colours_of(floor.data, "Radiosity.0003")
+    np.testing.assert_array_equal(values, fresh(floor, 3))
+    fresh_rays = report()["rays_by_kind"]
+    bake_range()
+    last = report()["frames"][2]
+    # All rays of patches and vertices that look for other surfaces.
+    assert last["rays"] <= sum(fresh_rays.values()) - fresh_rays["form_factors"]
+
+
+def test_a_camera_and_an_empty_that_move_are_nothing_that_moves(room):
+    for name, data in (("Eye", bpy.data.cameras.new("Eye")), ("Axes", None)):
+        thing = add_object(name, data)
+        for frame in (1, 2, 3):
+            thing.location.x = frame
+            thing.keyframe_insert("location", frame=frame)
+    assert bake_range() == [True, False, False]
+
+
+def test_where_what_rays_met_is_too_much_to_keep_a_sentence_says_so(room, monkeypatch):
+    _, box = room
+    move_the_box(box)
+    monkeypatch.setattr("radiosity_bake.core.bake.KEPT_RAYS_SHARE", 1e-6)
+    bake_range()
+    assert rays_of_frames()[2][1] == 0
+    assert [text for text in report()["warnings"] if "traced anew at each frame" in text]
+
+
 def test_the_frame_that_the_scene_is_at_is_shown(room):
     floor, _ = room
     bpy.context.scene.frame_set(2, subframe=0.25)
@@ -287,7 +337,7 @@ def failing_at_the_third(bakes=2):
     """Return a bake without rays that fails when it was done so often."""
     done = []
 
-    def bake(scene, settings, progress):
+    def bake(scene, settings, progress, **_):
         if len(done) == bakes:
             raise UnsolvableError("Light is trapped")
         done.append(scene)
@@ -315,7 +365,7 @@ def test_an_error_tells_of_the_files_that_were_written_before(room, run_instead,
 def test_ctrl_c_tells_of_the_files_that_were_written_before(room, run_instead, tmp_path, monkeypatch, capsys):
     done = []
 
-    def interrupted(*arguments):
+    def interrupted(*arguments, **_):
         if done:
             raise KeyboardInterrupt
         done.append(arguments)
