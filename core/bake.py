@@ -159,7 +159,8 @@ def bake(
     before : KeptRays or None
         What rays met when the scene was another, of which most may be as it was: that is not traced again.
     keep_rays : bool
-        Whether the result holds what rays met, for the bake of the next frame.
+        Whether the result holds what rays met, for the bake of the next frame. With either, patches are sampled by what
+        stays the same from frame to frame: the noise is another than without, and stays where nothing changes.
 
     Raises
     ------
@@ -444,6 +445,7 @@ def subdivided(
         smallest, _ = minimum_sizes(surfaces, settings, effort, area)
         least = min(smallest, automatic_size(area, effort))
         tree = coarsest_that_fits(surfaces, rays, lit, least, most_patches)
+        tree.by_key = rays.remembers
         per_row = rays_that_fit(effort.rays_per_patch, min(most_rays, MOST_RAYS), len(tree.patches()))
         transport = Transport(surfaces, tree, rays, lit, per_row, settings.seed)
         clock.start("Form factors", 0.03, 0.4)

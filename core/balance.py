@@ -22,7 +22,7 @@ from .solve import Exchange, Solution, Translucence
 from .surfaces import Surfaces
 from .textures import mean_colours
 from .transmittance import of_opaque
-from .transport import Transport, sample_points
+from .transport import Transport, keys_of_points, sample_points
 
 POINTS_PER_PATCH = 4
 """Points of a patch at which direct light is computed for the transport."""
@@ -359,7 +359,7 @@ def _direct_at(
     def work(first: int, last: int) -> DirectLight:
         part = order[first:last]
         at, axis = points[part].reshape(-1, 3), normals[part].reshape(-1, 3)
-        keys = (elements[part, None] * count + np.arange(count)).ravel()
+        keys = keys_of_points(transport.tree.keys(elements[part]), count)
         asked = LitPoints.of(at, axis, keys, np.repeat(mesh[part], count))
         light, _ = direct_light(emitters, transport.rays, asked, SHADOW_RAYS_PER_POINT, transport.seed + 52)
         return light

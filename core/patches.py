@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .clusters import Clusters, cluster_triangles
 from .crossings import Crossings
 from .geometry import edge_lengths, largest_edges, normalized, triangle_areas, triangle_cross, weights_in
-from .sampling import frames
+from .sampling import frames, mixed
 from .scene import Floats, Ints
 from .seams import Seams, cut_along
 from .slices import Slices, numbered, parts_of_edges, sliced, vertices_on_edges
@@ -68,6 +68,12 @@ class PatchTree:
         a member for clusters, which are none.
     level : (n,) int
         Splits by midpoints below its coarse patch.
+    key : (n,) int
+        A number that depends on the input triangle and on how the node was split from it, and not on what else was
+        split.
+    by_key : bool
+        Whether elements are sampled by these keys, and not by their numbers: so the rays of each stay what they were
+        in the frame before, whatever was split elsewhere.
     patch : (n,) int
         The patch that stands for each leaf: itself, or the cluster it is in. -1 for a cluster that is no patch.
     clusters : Clusters
@@ -92,6 +98,8 @@ class PatchTree:
         self.share: Floats = np.full(count, 0.5)
         self.root: Ints = np.arange(count, dtype=np.int64)
         self.level: Ints = np.zeros(count, dtype=np.int64)
+        self.key: Ints = np.arange(count, dtype=np.int64)
+        self.by_key = False
         self.patch: Ints = np.arange(count, dtype=np.int64)
         self.clusters = Clusters.none()
         self.first_cluster = 0
@@ -181,6 +189,13 @@ class PatchTree:
         carriers[clustered], remainder[clustered] = self.clusters.drawn(number, share[clustered])
         return carriers, remainder
 
+    def keys(self, elements: Ints) -> Ints:
+        """What elements (m,), which are twice a node and 1 more for its back, are sampled by, (m,)."""
+        if not self.by_key:
+            return elements
+        keys: Ints = 2 * self.key[elements >> 1] + (elements & 1)
+        return keys
+
     def add_clusters(self, clusters: Clusters) -> None:
         """Let clusters of leaves, the coarsest of them, take the place of their members; once, before any split."""
         self.clusters, self.first_cluster = clusters, len(self)
@@ -203,6 +218,9 @@ class PatchTree:
         self.share = np.concatenate([self.share, np.full(count, 0.5)])
         self.root = np.concatenate([self.root, self.root[example]])
         self.level = np.concatenate([self.level, np.zeros(count, dtype=np.int64)])
+        first = clusters.members[clusters.first]
+        # Numbers that no parts of these members have.
+        self.key = np.concatenate([self.key, key_below(self.key[first], -clusters.count)])
         self.patch = np.concatenate([self.patch, np.full(count, -1, dtype=np.int64)])
         self._stand(np.flatnonzero(clusters.parent < 0))
 
@@ -422,6 +440,8 @@ class PatchTree:
         children = len(self) + np.arange(len(parents))
         begin = np.flatnonzero(np.diff(parents, prepend=-1))
         self.first_child[parents[begin]] = children[begin]
+        number = children - self.first_child[parents]
+        self.key = np.concatenate([self.key, key_below(self.key[parents], number)])
         self.corners = np.concatenate([self.corners, corners])
         self.triangle = np.concatenate([self.triangle, self.triangle[parents]])
         self.weights = np.concatenate([self.weights, weights])
@@ -432,6 +452,11 @@ class PatchTree:
         self.root, self.level = np.concatenate([self.root, root]), np.concatenate([self.level, level])
         self.patch = np.concatenate([self.patch, children])
         return children
+
+
+def key_below(keys: Ints, numbers: Ints) -> Ints:
+    """Keys of what has a number below what has a key, both (n,): as good as random, and told by these alone."""
+    return mixed(mixed(keys.view(np.uint64) + np.uint64(1)) + numbers.astype(np.uint64)).view(np.int64)
 
 
 def _isosceles(middles: Floats, normals: Floats, areas: Floats) -> Floats:

@@ -6,7 +6,7 @@ The sequences are additive recurrences on the generalised golden ratio (M. Rober
 frac(i * a_d) with a_d = g**-(d+1) and g the positive root of x**(dim+1) = x + 1. A fixed number of patterns are made of
 them, each shifted by its own random numbers (Cranley & Patterson 1976); a patch takes the pattern that its hash names
 and turns it about its normal by an angle that its hash gives. So a ray costs no more than two products of small
-matrices, and depends on nothing but the seed and the patch's number. Vertices, which the eye compares, all take one
+matrices, and depends on nothing but the seed and the patch. Vertices, which the eye compares, all take one
 lattice.
 """
 
@@ -53,8 +53,8 @@ def sequence(first: int, count: int, dimensions: int) -> Floats:
     return result
 
 
-def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """SplitMix64's finalizer (Steele, Lea & Flood 2014): neighbouring integers become unrelated ones."""
+def mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """SplitMix64's finalizer (Steele, Lea & Flood 2014): neighbouring integers become unrelated ones, any shape."""
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return x ^ (x >> np.uint64(31))
@@ -63,10 +63,10 @@ def _mixed(x: NDArray[np.uint64]) -> NDArray[np.uint64]:
 def hashed(keys: Ints, dimensions: int, seed: int) -> Floats:
     """Uniform numbers in [0, 1) that depend on the key, the dimension and the seed alone, (n, dimensions)."""
     with np.errstate(over="ignore"):
-        base = _mixed(keys.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15) * np.uint64(seed + 1))
+        base = mixed(keys.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15) * np.uint64(seed + 1))
         lanes = np.arange(1, dimensions + 1, dtype=np.uint64) * np.uint64(0xD1342543DE82EF95)
-        mixed = _mixed(base[:, None] + lanes)
-    return (mixed >> np.uint64(11)).astype(np.float64) * 2.0**-53
+        drawn = mixed(base[:, None] + lanes)
+    return (drawn >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
 
 def radical_inverse(first: int, count: int) -> Floats:

@@ -52,6 +52,12 @@ def element_normals(surfaces: Surfaces, tree: PatchTree, elements: Ints) -> Floa
     return side_normals(surfaces.normals[tree.triangle[elements >> 1]], elements & 1)
 
 
+def keys_of_points(keys: Ints, count: int) -> Ints:
+    """Keys of so many points on each of what has a key (m,), (m * count,)."""
+    result: Ints = (keys[:, None] * count + np.arange(count)).ravel()
+    return result
+
+
 def points_in(tree: PatchTree, nodes: Ints, weights: Floats) -> Floats:
     """Positions of barycentric weights (m, r, 2) of corners 1 and 2 in nodes (m,): (m, r, 3)."""
     a, b, c = (tree.points[tree.corners[nodes, k]][:, None] for k in range(3))
@@ -62,7 +68,7 @@ def points_in(tree: PatchTree, nodes: Ints, weights: Floats) -> Floats:
 
 def sample_points(surfaces: Surfaces, tree: PatchTree, elements: Ints, count: int, seed: int) -> tuple[Floats, Floats]:
     """Points spread over elements and the normals there, both (m, count, 3)."""
-    square = shifted(sequence(0, count, 2), hashed(elements, 2, seed))
+    square = shifted(sequence(0, count, 2), hashed(tree.keys(elements), 2, seed))
     carriers, remainder = tree.carriers(elements >> 1, square[..., 0])
     weights = triangle_weights(np.stack([remainder, square[..., 1]], axis=-1))
     return points_on(surfaces, tree, elements, carriers, weights)
@@ -178,7 +184,8 @@ class Transport:
 
         def work(first: int, last: int) -> Rows:
             part = elements[first:last]
-            pattern, angle = patterns.choose(part, self.seed)
+            keys = self.tree.keys(part)
+            pattern, angle = patterns.choose(keys, self.seed)
             normals = element_normals(self.surfaces, self.tree, part)
             corner, edge1, edge2 = self._local_triangles(part >> 1)
             spread = np.stack([corner + (normals * OFFSET).astype(np.float32), edge1, edge2], axis=1)
@@ -189,7 +196,7 @@ class Transport:
                 origins[clustered], directions[clustered] = self._leaving_clusters(
                     part[clustered], patterns, pattern[clustered], angle[clustered]
                 )
-            chances = shifted(patterns.chances[:, None], hashed(part, 1, self.seed + 72)).astype(np.float32)
+            chances = shifted(patterns.chances[:, None], hashed(keys, 1, self.seed + 72)).astype(np.float32)
             hits, root, weights, distance = self.look(
                 origins.reshape(-1, 3), directions.reshape(-1, 3), chances.ravel(), count
             )
@@ -219,7 +226,7 @@ class Transport:
 
     def _carriers(self, elements: Ints, patterns: Patterns) -> Ints:
         """Triangles that the rays of elements leave, (m, r) nodes."""
-        shares = shifted(patterns.shares[:, None], hashed(elements, 1, self.seed + 71))[..., 0]
+        shares = shifted(patterns.shares[:, None], hashed(self.tree.keys(elements), 1, self.seed + 71))[..., 0]
         return self.tree.carriers(elements >> 1, shares)[0]
 
     def _local_triangles(self, nodes: Ints) -> tuple[Singles, Singles, Singles]:
@@ -336,7 +343,7 @@ class Transport:
         carriers = np.repeat(elements[:, None] >> 1, count, axis=1)
         place = np.full(2 * len(self.tree), -1, dtype=np.int64)
         positions = np.concatenate([patterns.positions for patterns in self._patterns], axis=1)
-        pattern, _ = self._patterns[0].choose(elements, self.seed)
+        pattern, _ = self._patterns[0].choose(self.tree.keys(elements), self.seed)
         for table in self.tables:
             place[:] = -1
             place[table.element] = np.arange(len(table.element))
@@ -389,7 +396,7 @@ class Transport:
 
         def work(first: int, last: int) -> Floats:
             axis = normals[first:last].reshape(-1, 3)
-            key = (elements[first:last, None] * count + np.arange(count)).ravel()
+            key = keys_of_points(self.tree.keys(elements[first:last]), count)
             pattern, angle = patterns.choose(key, self.seed + 33)
             directions = (patterns.directions[pattern] @ frames(axis, angle)).reshape(-1, 3)
             start = self.rays.local(points[first:last].reshape(-1, 3)) + (axis * OFFSET).astype(np.float32)

@@ -320,6 +320,11 @@ class RayScene:
                 transmittance is not None,
             )
 
+    @property
+    def remembers(self) -> bool:
+        """Whether rays of a bake before are known, or those of this one are kept."""
+        return self._memory is not None
+
     def kept(self) -> KeptRays | None:
         """What rays met, for another bake; None where that is not wanted, or would be too much."""
         return self._memory.kept() if self._memory is not None else None

@@ -291,8 +291,8 @@ class FrameRange:
         return light
 
     def _keeps_rays(self) -> bool:
-        """Whether frames may be traced after this one."""
-        return not self._one_tracing and len(self._frames) - len(self._told) > 1
+        """Whether frames may be traced after one another; those of a shorter range are the same as of a longer one."""
+        return not self._one_tracing
 
     def _put_aside(self, frame: int, why: str) -> None:
         self._dark.append(frame)

@@ -5,11 +5,11 @@
 import numpy as np
 import pytest
 from radiosity_bake.core.location import DEEPEST_TABLE, Locator
-from radiosity_bake.core.patches import LARGEST_ASPECT, PatchTree, coarse_patches
+from radiosity_bake.core.patches import LARGEST_ASPECT, PatchTree, clustered_patches, coarse_patches
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.surfaces import join
 
-from tests.core.building import DARK, areas, inside_weights, node_triangles
+from tests.core.building import DARK, areas, dense, inside_weights, node_triangles
 from tests.scenes import exact
 
 
@@ -239,3 +239,31 @@ def test_slivers_do_not_hang_the_triangulation():
     sliver = surface_mesh("sliver", [(0, 0, 0), (1, 0, 0), (0.5, 1e-6, 0)], [(0, 1, 2)])
     tree = coarse_patches(surfaces_of(sliver), 0.05)
     assert len(tree.leaves()) < 64
+
+
+def test_the_key_of_a_patch_does_not_depend_on_what_else_is_split_nor_on_the_order():
+    surfaces = join(exact.furnace()[0])
+    one, other = PatchTree(surfaces), PatchTree(surfaces)
+    one.split(np.array([0, 1]))
+    one.split(one.leaves()[-8:])
+    other.split(np.array([3]))
+    other.split(np.array([1]))
+    other.split(np.array([0]))
+    other.split(other.leaves())
+
+    def key_of_corners(tree):
+        return {tree.points[corners].tobytes(): int(key) for corners, key in zip(tree.corners, tree.key, strict=True)}
+
+    known, found = key_of_corners(one), key_of_corners(other)
+    both = known.keys() & found.keys()
+    assert len(both) > len(surfaces.triangles) + 8
+    assert all(known[corners] == found[corners] for corners in both)
+
+
+def test_no_two_nodes_have_the_same_key():
+    tree = clustered_patches(join(dense(exact.furnace()[0], 3)), 0.2)
+    tree.by_key = True
+    for _ in range(3):
+        tree.divide(tree.patches())
+    elements = np.arange(2 * len(tree))
+    assert len(np.unique(tree.keys(elements))) == len(elements)
