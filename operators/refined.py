@@ -31,14 +31,13 @@ from .places import (
     follow,
     homes_of,
     is_bent_by_parent,
-    outputs_by_source,
     remember_place,
     show_again,
     shows_place,
     take_out,
     take_transform,
 )
-from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget
+from .record import HIDDEN_SOURCE, REFINED_OUTPUT, forget, is_output
 from .targets import Target
 from .textured import Displays
 
@@ -94,7 +93,9 @@ def refined_to_keep(source: bpy.types.Object, target: Target) -> bpy.types.Objec
 
     One that has its original's transform cannot stand for an object that is flattened by now, nor the other way round.
     """
-    outputs = outputs_by_source().get(source, [])
+    # Asked for one object after the other: who stands in a scene is looked up for its own refined objects alone.
+    outputs = [obj for obj in bpy.data.objects if is_output(obj) and obj.radiosity.source == source]
+    outputs = [obj for obj in outputs if obj.users_scene]
     if len(outputs) != 1 or shows_place(outputs[0]) != (inverse_of(target.matrix) is not None):
         return None
     return outputs[0]
