@@ -18,6 +18,7 @@ from .bright_places import BrightPlaces, bright_places
 from .cells import Cells, Radiance
 from .checks import check_places, receivers_of_checks
 from .clock import Clock
+from .coarse_patches import clustered_patches, coarse_count
 from .crossings import find_crossings
 from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
 from .dense_meshes import gather_sparsely
@@ -51,7 +52,7 @@ from .lighting import (
 from .lit import Lit
 from .memory import BYTES_PER_TRIANGLE, WITHIN, Memory
 from .met_places import bytes_of_tables
-from .patches import PatchTree, clustered_patches, coarse_count
+from .patches import PatchTree
 from .progress import ProgressCallback, no_progress
 from .reachability import lit_sides
 from .receivers import Receivers, receivers

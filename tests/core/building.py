@@ -9,7 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from radiosity_bake.core.patches import PatchTree, clustered_patches, coarse_patches
+from radiosity_bake.core.coarse_patches import clustered_patches, coarse_patches
+from radiosity_bake.core.patches import PatchTree
 from radiosity_bake.core.reachability import lit_sides
 from radiosity_bake.core.result import BakedMesh
 from radiosity_bake.core.scene import Scene, SurfaceMesh, surface_mesh

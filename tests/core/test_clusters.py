@@ -7,7 +7,8 @@ import pytest
 from radiosity_bake.core import clusters as method
 from radiosity_bake.core.bake import bake
 from radiosity_bake.core.balance import TriangleMeans
-from radiosity_bake.core.patches import PatchTree, clustered_patches, coarse_patches
+from radiosity_bake.core.coarse_patches import clustered_patches, coarse_patches
+from radiosity_bake.core.patches import PatchTree
 from radiosity_bake.core.rows import ESCAPED
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings

@@ -4,8 +4,9 @@
 
 import numpy as np
 import pytest
+from radiosity_bake.core.coarse_patches import LARGEST_ASPECT, clustered_patches, coarse_patches
 from radiosity_bake.core.location import DEEPEST_TABLE, Locator
-from radiosity_bake.core.patches import LARGEST_ASPECT, PatchTree, clustered_patches, coarse_patches
+from radiosity_bake.core.patches import PatchTree
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.surfaces import join
 

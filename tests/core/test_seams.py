@@ -7,8 +7,8 @@ from contextlib import closing
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.coarse_patches import coarse_patches
 from radiosity_bake.core.crossings import find_crossings
-from radiosity_bake.core.patches import coarse_patches
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.subdivision import conforming_faces

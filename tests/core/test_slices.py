@@ -4,7 +4,8 @@
 
 import numpy as np
 import pytest
-from radiosity_bake.core.patches import LARGEST_ASPECT, LONGEST_ROW, PatchTree, coarse_patches
+from radiosity_bake.core.coarse_patches import LARGEST_ASPECT, LONGEST_ROW, coarse_patches
+from radiosity_bake.core.patches import PatchTree
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.slices import parts_of_edges, sliced
 from radiosity_bake.core.surfaces import join

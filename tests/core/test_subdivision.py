@@ -5,7 +5,8 @@
 import numpy as np
 import pytest
 from radiosity_bake.core import templates
-from radiosity_bake.core.patches import PatchTree, coarse_patches
+from radiosity_bake.core.coarse_patches import coarse_patches
+from radiosity_bake.core.patches import PatchTree
 from radiosity_bake.core.scene import Scene
 from radiosity_bake.core.subdivision import conforming_faces, input_faces
 from radiosity_bake.core.surfaces import join

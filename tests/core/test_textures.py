@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from radiosity_bake.core import bake as bake_module
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.coarse_patches import coarse_patches
 from radiosity_bake.core.emitting_pieces import MISPLACED, emitting_pieces, piece_areas
-from radiosity_bake.core.patches import coarse_patches
 from radiosity_bake.core.relight import ChangedSceneError, relight
 from radiosity_bake.core.scene import Scene, Texture, surface_mesh
 from radiosity_bake.core.settings import BakeSettings

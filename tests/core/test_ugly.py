@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.coarse_patches import coarse_patches
 from radiosity_bake.core.errors import NoLightError, NothingToBakeError, UnsolvableError
 from radiosity_bake.core.lighting import LARGEST_IMBALANCE
-from radiosity_bake.core.patches import coarse_patches
 from radiosity_bake.core.scene import AreaLamp, PointLamp, Scene, SunLamp, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
 from radiosity_bake.core.surfaces import join
@@ -218,7 +218,7 @@ def test_a_block_is_lit_alike_on_a_ground_however_wide(quality):
 
 
 def test_many_slivers_have_no_more_pieces_than_there_is_room_for(monkeypatch):
-    monkeypatch.setattr("radiosity_bake.core.patches.MOST_PIECES", 1000)
+    monkeypatch.setattr("radiosity_bake.core.coarse_patches.MOST_PIECES", 1000)
     slivers = [surface_mesh(f"sliver {k}", [(0, 0, k), (1e4, 0, k), (1e4, 0.1, k)], [(0, 1, 2)]) for k in range(10)]
     tree = coarse_patches(join(Scene(tuple(slivers), DARK)), 1e-6)
     # The last halving may leave pieces up to half as long as they could be.
