@@ -328,6 +328,9 @@ class Transport:
         few |= self._emitted_share(table.element) > LARGE_SHARE
         if few.any():
             self.lengthen(np.sort(table.element[few]), report)
+            # What more rays are the first to meet sends and gets light as all else does.
+            while len(met := self.met_but_untraced()):
+                self.trace(met, report)
 
     def _emitted_share(self, elements: Ints) -> Floats:
         """Share of the light emitted by all of some elements that each of them emits, (m,)."""

@@ -5,8 +5,9 @@
 import numpy as np
 import pytest
 from radiosity_bake.core.rows import ESCAPED
+from radiosity_bake.core.scene import Scene
 
-from tests.core.building import areas, factor_matrix, fronts, hits_by_row, node_triangles, transport_of
+from tests.core.building import areas, dense, factor_matrix, fronts, hits_by_row, node_triangles, transport_of
 from tests.scenes import exact, oracle
 
 
@@ -142,6 +143,22 @@ def test_lengthening_a_row_keeps_its_rays_and_adds_three_times_as_many():
         assert len(after[element]) == (1024 if element in elements[3:7] else 256)
         assert after[element][:256].tobytes() == before[element].tobytes()
     assert (transport.tables[1].valid == 1024).all()
+
+
+def test_what_lengthened_rows_are_the_first_to_meet_gets_rows_as_well():
+    lamp = exact.rectangle("lamp", (0.3, 0.3, 0.9), (0, 0.4, 0), (0.4, 0, 0), emission=5.0)
+    transport = transport_of(dense(Scene((*exact.box_walls((1, 1, 1)), lamp), np.zeros(3)), 4), rays=2)
+    emits = transport.surfaces.emission.any(axis=1)
+    lit = fronts(transport.tree)
+    transport.trace(lit[emits[transport.tree.triangle[lit >> 1]]][:1])
+    while len(met := transport.met_but_untraced()):
+        transport.trace(met)
+    before = np.count_nonzero(transport.has_row())
+    # The lamp's few rows that there are send out all the light that is known, and so get more rays.
+    transport.lengthen_few()
+    assert len(transport.tables[1].element) > 0
+    assert np.count_nonzero(transport.has_row()) > before
+    assert len(transport.met_but_untraced()) == 0
 
 
 def test_a_lengthened_row_is_the_row_that_is_traced_long_at_once():
