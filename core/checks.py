@@ -100,5 +100,6 @@ def receivers_of_checks(surfaces: Surfaces, faces: Faces, face: Ints, checks: Ch
         inward=np.zeros((len(side), 3)),
         sizes=largest_edges(chosen.points, chosen.corners),
         mesh=mesh,
+        shell=surfaces.shell_of_triangle[chosen.triangle],
         of_corner=np.zeros((0, 3), dtype=np.int64),
     )

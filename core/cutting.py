@@ -297,6 +297,7 @@ def within_faces(faces: Faces, face: Ints, places: Receivers, corners: Ints, wei
         inward=np.zeros((len(face), 3)),
         sizes=places.sizes[corners].mean(axis=1),
         mesh=places.mesh[corners[:, 0]],
+        shell=places.shell[corners[:, 0]],
         of_corner=np.zeros((0, 3), dtype=np.int64),
     )
 
@@ -403,6 +404,7 @@ def _along(faces: Faces, places: Receivers, cuts: CutEdges, share: Floats) -> Re
         inward=inward,
         sizes=places.sizes[cuts.seen] * (1.0 - share) + places.sizes[cuts.hidden] * share,
         mesh=places.mesh[cuts.seen],
+        shell=places.shell[cuts.seen],
         of_corner=np.zeros((0, 3), dtype=np.int64),
     )
 

@@ -339,7 +339,9 @@ def gather_indirect(
         in_plane = _in_plane_of_met(transport, receivers.lift[part], found)
         hidden = _covered(transport, receivers.sizes[part], finest, distance, in_plane) | (valid < LEAST_VALID_SHARE)
         kept[part] = places[:, : kept.shape[1]]
-        touching = _touching(transport, receivers.inward[part], finest, distance) & ~hidden
+        shell = transport.surfaces.shell_of_triangle[found.triangle].reshape(distance.shape)
+        beside = np.where(shell == receivers.shell[part, None], np.float32(np.inf), distance)
+        touching = _touching(transport, receivers.inward[part], finest, beside) & ~hidden
         free: Floats = distance.min(axis=1).astype(np.float64) / transport.rays.scale
         return means, noise, free, hidden, touching, aimed
 
@@ -489,6 +491,10 @@ def _covered(
 
 
 def _touching(transport: Transport, inward: Floats, finest: float, distance: Singles) -> NDArray[np.bool_]:
+    """Whether places are on the outline of what stands there, (n,), by how far rays (n, r) get until they meet that.
+
+    The surface itself does not count: what goes on in a fold has the light of the fold.
+    """
     # Solids are smaller by a hair for rays.
     reach = np.float32(transport.rays.scale * max(TOUCHING * finest, 10.0 * transport.surfaces.hair))
     # On the border of its own surface a vertex gathers aside, and meets what is beside it from there.

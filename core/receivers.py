@@ -16,13 +16,21 @@ from .scene import Floats, Ints
 from .subdivision import Faces
 from .surfaces import Surfaces
 from .terminator import rises
+from .visibility import OFFSET
 
 NORMAL_CELLS = 1024
 """Shading normals closer than about 1/1024 count as one: corners of a smooth or flat surface share a value, corners on
 the two sides of a hard edge do not."""
 
-CODES_OF_VERTEX = (2 * NORMAL_CELLS + 1) ** 3
+NORMALS = (2 * NORMAL_CELLS + 1) ** 3
 """Normals that are told apart at one vertex."""
+
+CODES_OF_VERTEX = 2 * NORMALS
+"""Of the shading normals that faces share, and of the faces' own in a steep fold."""
+
+STEEP = 0.5
+"""Cosine between the shading normal and a face's own below which the faces around a vertex get light each by itself: in
+such a fold, what stands upright on the mean of all faces is behind some of them."""
 
 BORDER = 0.05
 """A vertex surely lies inside its surface when the mean way to the middles of its faces is less than this share of
@@ -31,6 +39,10 @@ their mean distance; on a straight border of even faces it is about 0.5, and sti
 INWARD = 0.02
 """Share of the way from a vertex towards the middle of its faces at which light is gathered: a vertex on the border of
 a face may lie in the plane of the next wall, where no ray can tell the two sides apart."""
+
+LEAST_WAY = 16.0 * OFFSET
+"""The least way in a steep fold, in extents of the scene: rays, which start off the face, shall not start behind the
+face across, for folds that open by 4 degrees or more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +63,7 @@ class Receivers:
         How far the position is off the vertex.
     sizes : (n,) float, scene units
         Mean longest edge of the faces around.
-    mesh : (n,) int
+    mesh, shell : (n,) int
         That each lies on.
     of_corner : (f, 3) int
         The receiver of each face corner, for the face sides given.
@@ -66,6 +78,7 @@ class Receivers:
     inward: Floats
     sizes: Floats
     mesh: Ints
+    shell: Ints
     of_corner: Ints
 
     def vertices(self) -> Ints:
@@ -113,72 +126,98 @@ def receivers(surfaces: Surfaces, faces: Faces, face_of_side: Ints, side: Ints) 
         The faces and their sides (1: the back) that want values.
     """
     corners, points = faces.corners[face_of_side], faces.points
+    triangle, weights = faces.triangle[face_of_side], faces.weights[face_of_side]
     shading = side_normals(faces.corner_normals(surfaces)[face_of_side].reshape(-1, 3), np.repeat(side, 3))
-    codes, first, group = np.unique(
-        _codes(faces.vertices[face_of_side].ravel(), shading), return_index=True, return_inverse=True
-    )
+    geometric = np.repeat(side_normals(surfaces.normals[triangle], side), 3, axis=0)
+    at = points[corners]
+    toward = (((at[:, 0] + at[:, 1] + at[:, 2]) / 3.0)[:, None] - at).reshape(-1, 3)
+
+    vertex = faces.vertices[face_of_side].ravel()
+    codes = vertex * CODES_OF_VERTEX + _normal_codes(shading)
+    groups = np.unique(codes, return_index=True, return_inverse=True)
+    aside = _on_border(toward, groups[2], len(groups[0]))[groups[2]]
+    steep = np.einsum("cx,cx->c", shading, geometric) < STEEP
+    if steep.any():
+        steep = np.isin(codes, codes[steep])
+        codes[steep] = vertex[steep] * CODES_OF_VERTEX + NORMALS + _normal_codes(geometric[steep])
+        aside |= steep
+        groups = np.unique(codes, return_index=True, return_inverse=True)
+    codes, first, group = groups
     count = len(first)
 
     def mean(values: Floats) -> Floats:
-        total = np.stack([np.bincount(group, weights=values[:, k], minlength=count) for k in range(3)], axis=1)
-        return total / np.bincount(group, minlength=count)[:, None]
+        return _means(values, group, count)
 
-    normals = normalized(mean(shading))
+    normals, lift = normalized(mean(shading)), normalized(mean(geometric))
     # Of a dense mesh these are large, and what follows takes as much again.
-    del shading
-    geometric = side_normals(surfaces.normals[faces.triangle[face_of_side]], side)
-    lift = normalized(mean(np.repeat(geometric, 3, axis=0)))
-    triangle = faces.triangle[face_of_side]
-    corner_sides, of_corner = np.repeat(side, 3), np.repeat(triangle, 3)
-    rise = mean(rises(surfaces, of_corner, corner_sides, faces.weights[face_of_side].reshape(-1, 3)))
-    mesh = surfaces.mesh_of_triangle[triangle][first // 3]
+    del shading, geometric
+    share = np.where(aside, INWARD, 0.0)
+    share[steep] = np.clip(LEAST_WAY * surfaces.extent / lengths(toward[steep]), INWARD, 1.0)
+    asked = weights + share.reshape(-1, 3, 1) * (weights.mean(axis=1, keepdims=True) - weights)
+    rise = mean(rises(surfaces, np.repeat(triangle, 3), np.repeat(side, 3), asked.reshape(-1, 3)))
+    mesh, shell = (of[triangle][first // 3] for of in (surfaces.mesh_of_triangle, surfaces.shell_of_triangle))
     position = points[corners.ravel()[first]]
-    at = points[corners]
-    toward = (((at[:, 0] + at[:, 1] + at[:, 2]) / 3.0)[:, None] - at).reshape(-1, 3)
-    inward = _into_a_face(toward, mean(toward), group, count)
-    inward[~_on_border(group.reshape(-1, 3), inward.any(axis=1))] = 0.0
+    inward = (share[:, None] * toward)[_most_in_the_middle(toward, mean(toward), group, count)]
     size = largest_edges(points, corners)
     return Receivers(
-        position + INWARD * inward,
+        position + inward,
         normals,
         lift,
         rise,
         surfaces.grazing[mesh],
         codes,
-        INWARD * inward,
+        inward,
         np.bincount(group, weights=np.repeat(size, 3), minlength=count) / np.bincount(group, minlength=count),
         mesh,
+        shell,
         group.reshape(-1, 3),
     )
 
 
-def _on_border(of_corner: Ints, candidates: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which candidates (n,) end an edge that one face alone has: uneven faces may surround a vertex, too."""
+def _means(values: Floats, group: Ints, count: int) -> Floats:
+    """Mean of values (c, 3) over each group, (count, 3)."""
+    total = np.stack([np.bincount(group, weights=values[:, k], minlength=count) for k in range(3)], axis=1)
+    return total / np.bincount(group, minlength=count)[:, None]
+
+
+def _on_border(toward: Floats, group: Ints, count: int) -> NDArray[np.bool_]:
+    """Which vertices lie on a border, (count,) bool.
+
+    That is not in the middle of their faces, and, as uneven faces may surround a vertex, at the end of an edge that one
+    face alone has.
+
+    Parameters
+    ----------
+    toward : (c, 3) float
+        From the vertex of each face corner to the middle of the face.
+    group : (c,) int
+    """
+    length = np.bincount(group, weights=lengths(toward), minlength=count) / np.bincount(group, minlength=count)
+    candidates = lengths(_means(toward, group, count)) > BORDER * length
+    of_corner = group.reshape(-1, 3)
     following = np.roll(of_corner, -1, axis=1)
     both = candidates[of_corner] & candidates[following]
     key = (np.minimum(of_corner, following)[both] << 32) | np.maximum(of_corner, following)[both]
     edges, faces_beside = np.unique(key, return_counts=True)
     alone = edges[faces_beside == 1]
-    result = np.zeros(len(candidates), dtype=bool)
+    result = np.zeros(count, dtype=bool)
     result[alone >> 32] = True
     result[alone & 0xFFFFFFFF] = True
     return result
 
 
-def _codes(vertices: Ints, shading: Floats) -> Ints:
-    """Numbers that are equal for the same vertex and about the same shading normal, (c,)."""
-    span = 2 * NORMAL_CELLS + 1
-    codes = vertices
-    for coordinate in shading.T:
-        codes = codes * span + (np.rint(coordinate * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS)
+def _normal_codes(normals: Floats) -> Ints:
+    """Numbers below `NORMALS` that are equal for about the same normal, (c,)."""
+    codes = np.zeros(len(normals), dtype=np.int64)
+    for coordinate in normals.T:
+        codes = codes * (2 * NORMAL_CELLS + 1) + (np.rint(coordinate * NORMAL_CELLS).astype(np.int64) + NORMAL_CELLS)
     return codes
 
 
-def _into_a_face(toward: Floats, mean: Floats, group: Ints, count: int) -> Floats:
-    """Way from each vertex into the face that lies most in the middle of its faces, (count, 3).
+def _most_in_the_middle(toward: Floats, mean: Floats, group: Ints, count: int) -> Ints:
+    """The corner of each vertex whose face lies most in the middle of its faces, (count,).
 
-    It ends on that face itself: the mean of several would lie below a hollow or a bulge. Zero where the faces surround
-    the vertex, which is then no border.
+    The mean of the ways into several faces would end below a hollow or a bulge.
 
     Parameters
     ----------
@@ -192,8 +231,6 @@ def _into_a_face(toward: Floats, mean: Floats, group: Ints, count: int) -> Float
     best = np.full(count, -np.inf)
     np.maximum.at(best, group, along)
     chosen = np.flatnonzero(along == best[group])
-    face = np.zeros(count, dtype=np.int64)
-    face[group[chosen[::-1]]] = chosen[::-1]
-    length = np.bincount(group, weights=lengths(toward), minlength=count) / np.bincount(group, minlength=count)
-    border = lengths(mean) > BORDER * length
-    return np.where(border[:, None], toward[face], 0.0)
+    corner = np.zeros(count, dtype=np.int64)
+    corner[group[chosen[::-1]]] = chosen[::-1]
+    return corner

@@ -227,7 +227,9 @@ def test_beyond_two_cuts_is_the_side_of_the_two_other_corners():
     faces = Faces(points, number, 0 * number, triangles, triangles, np.arange(2), np.zeros((2, 3, 3)), np.arange(2))
     hidden = np.array([False, True, True, False, True, True])
     at = np.zeros((6, 3))
-    places = Receivers(at, at, at, at, np.ones(6), np.arange(6), at, np.ones(6), np.zeros(6, dtype=int), of_corner)
+    places = Receivers(
+        at, at, at, at, np.ones(6), np.arange(6), at, np.ones(6), *np.zeros((2, 6), dtype=int), of_corner
+    )
     start, end, seen, unseen = np.array([[0, 1, 0, 1], [0, 2, 0, 2], [2, 1, 3, 4], [2, 3, 3, 5]]).T
     half = np.full(4, 0.5)
     no = np.zeros(4, dtype=bool)
@@ -253,7 +255,7 @@ def test_a_vertex_that_gathers_aside_does_not_move_the_cut():
     up, inward = np.tile(UP, (4, 1)), np.zeros((4, 3))
     inward[2] = (-0.05, -0.04, 0.0)
     zero, one = np.zeros((4, 3)), np.ones(4)
-    places = Receivers(points + inward, up, up, zero, one, number, inward, one, np.zeros(4, dtype=int), triangles)
+    places = Receivers(points + inward, up, up, zero, one, number, inward, one, *np.zeros((2, 4), dtype=int), triangles)
     hidden = np.array([False, False, True, True])
     cuts = find_cuts(faces, places, hidden, lambda where: where.points[:, 1] > 0.6)
     inner = ~cuts.border

@@ -26,7 +26,7 @@ def floor_and_wall(height=0.0, length=3.0):
 def floor_places():
     up, zero = np.tile(UP, (4, 1)), np.zeros((4, 3))
     one, number = np.ones(4), np.arange(4)
-    return Receivers(POINTS, up, up, zero, one, number, zero, one, 0 * number, TRIANGLES)
+    return Receivers(POINTS, up, up, zero, one, number, zero, one, 0 * number, 0 * number, TRIANGLES)
 
 
 def floor_faces():

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
+from radiosity_bake.core.receivers import receivers
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings
+from radiosity_bake.core.subdivision import input_faces
 from radiosity_bake.core.surfaces import HAIR, join
 from radiosity_bake.core.visibility import OFFSET, RayScene
 
@@ -235,3 +237,51 @@ def test_rooms_of_sheets_with_walls_in_one_plane_keep_their_own_light(beyond):
 
     # A wall that reflects an eighth as much makes the room a sixth darker where rays meet it.
     assert light(*bright, *beside) == pytest.approx(light(*bright), rel=0.02)
+
+
+def smooth_trough(opening):
+    """A long trough of two walls that open by so many degrees, shaded smooth: its bottom looks straight up."""
+    leaning = np.radians(opening / 2)
+    across = np.sin(leaning) * np.array([-1.0, 0.0, 1.0])
+    along = np.linspace(-16.0, 16.0, 9)
+    vertices = [(x, y, np.cos(leaning) * abs(k - 1)) for y in along for k, x in enumerate(across)]
+    wall = np.array(
+        [(np.cos(leaning), 0.0, np.sin(leaning)), (0.0, 0.0, 1.0), (-np.cos(leaning), 0.0, np.sin(leaning))]
+    )
+    starts = [3 * row + side for row in range(len(along) - 1) for side in (0, 1)]
+    triangles = np.array([t for a in starts for t in ((a, a + 1, a + 4), (a, a + 4, a + 3))])
+    return surface_mesh("trough", vertices, triangles, corner_normals=wall[triangles % 3])
+
+
+@pytest.mark.parametrize("output", ["REFINED", "ORIGINAL"])
+@pytest.mark.parametrize("opening", [90, 60, 30])
+def test_in_the_fold_of_a_smooth_mesh_there_is_the_light_of_the_fold(opening, output):
+    trough = smooth_trough(opening)
+    (mesh,) = bake(Scene((trough,), np.ones(3)), BakeSettings(quality="DRAFT", output=output)).meshes
+    corners = mesh.vertices[mesh.triangles]
+    bottom = (np.abs(corners[:, :, 0]) < 1e-9) & (np.abs(corners[:, :, 1]) < 9.0)
+    # The sky between the rims of an endless trough. Taken for the foot of something that stands there, the bottom had
+    # the light of the rims, one and a half times as much and more. 64 even rays tell a share to
+    # about 0.03.
+    assert bottom.any()
+    assert mesh.irradiance[bottom] == pytest.approx(np.sin(np.radians(opening / 2)), abs=0.05)
+
+
+@pytest.mark.parametrize(("opening", "each"), [(90, 1), (30, 2)])
+def test_in_a_steep_fold_each_face_gets_light_by_itself_and_on_itself(opening, each):
+    trough = smooth_trough(opening)
+    surfaces = join(Scene((trough,), DARK))
+    faces = input_faces(surfaces)
+    count = len(faces.triangle)
+    places = receivers(surfaces, faces, np.arange(count), np.zeros(count, dtype=int))
+    at = trough.vertices[places.vertices()]
+    bottom = (at[:, 0] == 0.0) & (np.abs(at[:, 1]) < 16.0)
+    assert len(np.unique(places.vertices()[bottom])) == 7
+    assert np.count_nonzero(bottom) == 7 * each
+    # All corners there are on the plane of their face, and look along its normal where it is theirs alone.
+    face, corner = np.nonzero(bottom[places.of_corner])
+    at = places.of_corner[face, corner]
+    off = places.points[at] - trough.vertices[trough.triangles[face, corner]]
+    assert np.einsum("kx,kx->k", off, surfaces.normals[face]) == pytest.approx(0.0, abs=1e-12)
+    facing = np.einsum("kx,kx->k", places.lift[at], surfaces.normals[face])
+    assert facing == pytest.approx(1.0 if each == 2 else np.sin(np.radians(45)))
