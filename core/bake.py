@@ -20,7 +20,8 @@ from .checks import check_places, receivers_of_checks
 from .clock import Clock
 from .coarse_patches import clustered_patches, coarse_count
 from .crossings import find_crossings
-from .cutting import CutEdges, cut_receivers, edges_to_outlines, edges_under_walls, find_cuts
+from .cut_edges import CutEdges, edges_to_outlines, edges_under_walls, find_cuts
+from .cutting import cut_receivers
 from .dense_meshes import gather_sparsely
 from .detail import FaceSizes, GatherAt, counted_share_of_triangles, light_up_in_detail, wanted_sides
 from .diagonals import turned_diagonals

@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .cutting import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts, within_faces
+from .cut_edges import ROUGH_SEARCHES, IsHidden, crooked_faces, faces_with_feet, find_cuts, within_faces
 from .direct import LUMINANCE
 from .error_estimate import interpolation_error, lit_area
 from .gather import Gathered, Mixture

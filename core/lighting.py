@@ -16,7 +16,8 @@ from .balance import Balance, check_solved, energy, left_emission, seen_radiance
 from .cells import Cells, Radiance
 from .checks import Checks
 from .clock import Clock
-from .cutting import CutEdges, cut_faces, drawn_to_cut, values_on_outlines
+from .cut_edges import CutEdges
+from .cutting import cut_faces, drawn_to_cut, values_on_outlines
 from .direct import Emitters
 from .direct_light import DirectLight
 from .error_estimate import Expected, relative_error

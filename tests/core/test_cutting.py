@@ -9,15 +9,8 @@ under the block receives nothing.
 import numpy as np
 import pytest
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.cutting import (
-    LEAST_PIECE,
-    SEARCHES,
-    SECTIONS,
-    CutEdges,
-    cut_faces,
-    find_cuts,
-    values_on_outlines,
-)
+from radiosity_bake.core.cut_edges import LEAST_PIECE, SEARCHES, SECTIONS, CutEdges, find_cuts
+from radiosity_bake.core.cutting import cut_faces, values_on_outlines
 from radiosity_bake.core.receivers import Receivers, receivers
 from radiosity_bake.core.scene import Scene, surface_mesh
 from radiosity_bake.core.settings import BakeSettings

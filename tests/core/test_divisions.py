@@ -4,7 +4,8 @@
 
 import numpy as np
 import pytest
-from radiosity_bake.core.cutting import cut_faces, edges_under_walls
+from radiosity_bake.core.cut_edges import edges_under_walls
+from radiosity_bake.core.cutting import cut_faces
 from radiosity_bake.core.divisions import Divisions, blocked_edges
 from radiosity_bake.core.receivers import Receivers
 from radiosity_bake.core.subdivision import Faces
