@@ -328,8 +328,9 @@ def _bake(scene: Scene, surfaces: Surfaces, rays: RayScene, settings: BakeSettin
             of_cells = aside[cover.base_of(cells.element)]
             of_node = receivers_of_nodes(leaves, shown)
             # Solids hide what is in them; nothing sees it.
-            divisions = Divisions.of(blocked_edges(rays, shown.places, of_node, shown.gathered.hidden, finest, walls))
-            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells, of_node, divisions)
+            hidden = shown.gathered.hidden
+            divisions = Divisions.of(blocked_edges(rays, shown.places, of_node, hidden, finest, walls))
+            on_faces = PlacesOnFaces(cells, leaves, shown.gathered.places, of_cells, of_node, hidden, divisions)
             shown, radiance = looked_again(rays.workers, patches, light, surfaces, shown, on_faces)
         clock.start("Cutting", 0.95, 0.98)
         if settings.method == "ADAPTIVE":

@@ -138,9 +138,12 @@ class Cells:
 
     def corners(self, cells: Ints) -> Floats:
         """Barycentric coordinates of the corners of cells (n,) in the surfaces' triangles, (n, 3, 3)."""
-        node = self.node[cells]
-        corners: Floats = cell_corners(self.centre[cells], self._along[node]) @ self._corners_of_node[node]
+        corners: Floats = self.corners_in_nodes(cells) @ self._corners_of_node[self.node[cells]]
         return corners
+
+    def corners_in_nodes(self, cells: Ints) -> Floats:
+        """The same in their nodes."""
+        return cell_corners(self.centre[cells], self._along[self.node[cells]])
 
     def places(self, found: Hits) -> NDArray[np.int32]:
         """The place that each ray met, or `ESCAPED`, (n,)."""

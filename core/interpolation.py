@@ -31,6 +31,10 @@ patch's own radiosity: what was gathered at three points says less of its mean t
 MOST_CORRECTED = 0.1
 """Share by which the light at the vertices is made to agree with the patches' power at most."""
 
+WAYS_OUT = (0.25, 0.5, 0.75, 0.99)
+"""Shares of the way from the middle of a cell to its corners at which faces that are not hidden are looked for. What
+reaches out of a convex foot has a corner of the cell, of which rounding must not make its neighbour's."""
+
 MET_AT_ONCE = 2**17
 """Places met by rays that are looked through at once."""
 
@@ -49,6 +53,7 @@ class PlacesOnFaces:
         inside a solid in part, whose radiosity is that of the rest.
     of_node : (2 * nodes, 3) int
         As `receivers_of_nodes` has them.
+    hidden : (receivers,) bool
     divisions : Divisions
         Of the sides of nodes, (2 * nodes,).
     """
@@ -60,9 +65,10 @@ class PlacesOnFaces:
         met: MetPlaces,
         aside: NDArray[np.bool_],
         of_node: Ints,
+        hidden: NDArray[np.bool_],
         divisions: Divisions,
     ) -> None:
-        self.tree, self.copied = tree, cells.copied
+        self.tree = tree
         count = len(cells.element)
         leaf, weights = tree.descend(cells.node, cells.centre)
         # Behind the places come the cells of the world's map, and what is none counts from the end.
@@ -76,20 +82,64 @@ class PlacesOnFaces:
         seen[cells.copied] |= seen[count - len(cells.copied) : count]
         self.place = np.flatnonzero(seen[: 2 * len(leaf)]).astype(np.int32)
         cell = self.place >> 1
-        self.side = (2 * leaf[cell] + (self.place & 1)).astype(np.int32)
-        self.whole = leaf[cell] == cells.element[self.place] >> 1
+        leaf, weights = leaf[cell], weights[cell]
+        unseen = hidden[of_node] & (of_node >= 0).all(axis=1, keepdims=True)
+        out = _out_of_hidden_faces(cells, tree, self.place, unseen.all(axis=1), leaf, weights)
+        # What is close over the hidden middle sees what it covers, and not what is beside that.
+        kept = np.flatnonzero(~np.isin(cells.copied, self.place[out]))
+        self.copy, self.copied = count - len(cells.copied) + kept, cells.copied[kept]
+        self.side = (2 * leaf + (self.place & 1)).astype(np.int32)
+        self.whole = leaf == cells.element[self.place] >> 1
         self.areas = cells.areas[cell]
         self.open = ~aside[self.place]
-        u, v = weights[cell, 0], weights[cell, 1]
+        u, v = weights.T
         shares = np.stack([1.0 - u - v, u, v], axis=1)
         divided, own = divisions.own_corners(self.side, shares)
         shares[divided] = own
         # On the two sides of a wall, a patch's own radiosity is that of neither.
         self.whole[divided] = False
+        self.mixed = np.flatnonzero(unseen.any(axis=1) & ~unseen.all(axis=1))
+        self.unseen = unseen[self.mixed]
         self.divided, self.beside_walls = divisions.number, bool(divisions.thin.any())
         self.at_divided = of_node[divisions.number]
         self.shares = shares.astype(np.float32)
-        self.triangle = tree.triangle[leaf[cell]].astype(np.int32)
+        self.triangle = tree.triangle[leaf].astype(np.int32)
+
+
+def _out_of_hidden_faces(
+    cells: Cells,
+    tree: PatchTree,
+    places: NDArray[np.int32],
+    hidden: NDArray[np.bool_],
+    leaf: Ints,
+    weights: Singles,
+) -> Ints:
+    """Move places (p,) that lie on hidden faces to where their cells reach out of these; returns which were moved.
+
+    The middle of a cell may lie under what stands there, but rays meet only what reaches out from under it.
+
+    Parameters
+    ----------
+    hidden : (2 * nodes,) bool
+        Sides of leaves that nothing sees.
+    leaf : (p,) int
+        That each lies in, and
+    weights : (p, 2) float32
+        its barycentric coordinates there; both are changed.
+    """
+    wanted = np.flatnonzero(hidden[2 * leaf + (places & 1)])
+    moved = [np.zeros(0, dtype=np.int64)]
+    for share in WAYS_OUT:
+        corners = cells.corners_in_nodes(places[wanted] >> 1)[:, :, 1:]
+        for corner in range(3):
+            cell = places[wanted] >> 1
+            at = cells.centre[cell] + share * (corners[:, corner] - cells.centre[cell])
+            beside, inside = tree.descend(cells.node[cell], at.astype(np.float32))
+            out = ~hidden[2 * beside + (places[wanted] & 1)]
+            leaf[wanted[out]], weights[wanted[out]] = beside[out], inside[out]
+            moved.append(wanted[out])
+            wanted, corners = wanted[~out], corners[~out]
+    return np.concatenate(moved)
 
 
 class InterpolatedRadiance:
@@ -125,6 +175,9 @@ class InterpolatedRadiance:
         """Radiance of places when the vertices have the light of `shown`, (places, 3), W m^-2 sr^-1."""
         there = self._on_faces
         corners = corner_irradiance_of_nodes(there.tree, shown)
+        # Rays meet what is seen of a face, and parts of it may be hidden altogether and dark.
+        seen = np.where(there.unseen, np.nan, 0.0)[:, :, None] + corners[there.mixed]
+        corners[there.mixed] = np.where(there.unseen[:, :, None], np.nanmean(seen, axis=1, keepdims=True), seen)
         corners[there.divided] = shown.gathered.irradiance[there.at_divided]
         irradiance = np.einsum("pk,pkc->pc", there.shares, corners.take(there.side, axis=0))
         light = corners @ LUMINANCE.astype(np.float32)
@@ -145,8 +198,8 @@ class InterpolatedRadiance:
         result[place] = reflected[known]
         lit = np.zeros(len(result), dtype=bool)
         lit[place] = True
-        copies = len(result) - len(there.copied) + np.flatnonzero(lit[there.copied])
-        result[copies] = result[there.copied[lit[there.copied]]]
+        shown_again = lit[there.copied]
+        result[there.copy[shown_again]] = result[there.copied[shown_again]]
         return result
 
     def _balanced(self, reflected: Singles, known: NDArray[np.bool_]) -> Floats:
