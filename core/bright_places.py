@@ -39,6 +39,9 @@ AIMED_SHARE = 0.5
 ENTRY_IN_PLACES = 3
 """What an entry of `AimedLight` takes, in places that rays met."""
 
+LEAST_BEND = 1e-9
+"""What the square of the mean normal of a place lacks at least that is bent: of a flat one it is rounding."""
+
 TINY = 1e-30
 """Below any area, and any square of a distance, that rays are traced over."""
 
@@ -185,7 +188,8 @@ def bright_places(
 def shares_of_rays(bright: BrightPlaces, points: Floats, normals: Floats) -> Floats:
     """Share of its aimed rays that each receiver sends to each bright place, (n, k); rows of zeros where it sees none.
 
-    By what a disk of its size would send, and a little where it may be turned away.
+    By what a disk of its size would send, and a little where it may be turned away. Of a bent place, such as a ring
+    of faces within a lampshade, some look farther to the side than their mean normal does: as much as makes it short.
     """
     way = bright.centre - points[:, None]
     square = np.einsum("nkx,nkx->nk", way, way)
@@ -193,6 +197,8 @@ def shares_of_rays(bright: BrightPlaces, points: Floats, normals: Floats) -> Flo
     size = np.minimum(bright.radius / distance, 1.0)
     height = np.einsum("nkx,nx->nk", way, normals) / distance
     facing = -np.einsum("nkx,kx->nk", way, bright.vector) / distance
+    bend = 1.0 - np.einsum("kx,kx->k", bright.vector, bright.vector)
+    facing += np.sqrt(np.where(bend > LEAST_BEND, bend, 0.0))
     light = np.clip(height + size, 0.0, 1.0) * np.clip(facing + size, 0.0, 1.0) * (height > -size)
     light *= bright.flux / (square + bright.radius**2)
     whole = light.sum(axis=1, keepdims=True)

@@ -3,13 +3,14 @@
 """Rays aimed at small bright places: the light that comes from them is exact in the mean, and far less noisy."""
 
 from contextlib import closing, nullcontext
+from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 from radiosity_bake.core import bake as bake_module
 from radiosity_bake.core.bake import bake
-from radiosity_bake.core.bright_places import BrightPlaces, aimed_light
+from radiosity_bake.core.bright_places import BrightPlaces, aimed_light, shares_of_rays
 from radiosity_bake.core.geometry import triangle_areas
 from radiosity_bake.core.lit_points import LitPoints
 from radiosity_bake.core.relight import relight
@@ -90,6 +91,29 @@ def test_half_of_a_bright_place_that_is_hidden_gives_none():
     truth = exact.rectangle_seen_from_below(points, (x + SIDE / 2, y, z), SIDE / 2, SIDE)
     # Half of the 192 rays are on the seen half, all but those on the border: 1 of 8 across.
     assert light == pytest.approx(truth, rel=0.05)
+
+
+def test_a_bent_place_is_aimed_at_from_where_only_its_faces_at_the_edge_are_seen():
+    # The ring around the hole of a lampshade, whose faces look down and to its middle: through the hole, a wall sees
+    # those on the far side from above.
+    angle = 2.0 * np.pi * np.arange(16) / 16
+    corners = np.stack([[(r * np.cos(a), r * np.sin(a), z) for a in angle] for r, z in ((0.04, 0.22), (0.1, 0.2))])
+    middle = corners.mean(axis=(0, 1))
+    inward = np.stack([-0.02 * np.cos(angle), -0.02 * np.sin(angle), np.full(16, -0.06)], axis=1) / np.hypot(0.02, 0.06)
+    wall = np.array([[2.0, 0.0, 0.45]])
+    assert (np.einsum("kx,kx->k", inward, wall - corners.mean(axis=0)) > 0.0).any()
+    square = exact.rectangle("square", CORNER, (0, SIDE, 0), (SIDE, 0, 0))
+    ring = replace(
+        bright_square(join(Scene((square,), DARK))),
+        centre=middle[None],
+        vector=inward.mean(axis=0)[None],
+        radius=np.array([0.1]),
+    )
+    toward = np.array([[-1.0, 0.0, 0.0]])
+    assert shares_of_rays(ring, wall, toward) == pytest.approx(1.0)
+    # A flat one is turned away there.
+    flat = replace(ring, vector=np.array([[0.0, 0.0, -1.0]]))
+    assert shares_of_rays(flat, wall, toward) == 0.0
 
 
 def lamp_near_ceiling():
