@@ -19,6 +19,9 @@ SAFETY = 1.75
 patches' own radiosity, nor every small place."""
 
 
+FAR_OFF = {"DRAFT": 0.5, "GOOD": 0.2, "HIGH": 0.1}
+"""Estimate above which a bake says that it is far from what its quality stands for: ten times as much."""
+
 LIT_AREA_STEP = 1e-3
 """Share by which the lit area may still fall when it is taken for found."""
 
@@ -233,3 +236,20 @@ def _relative(area: Floats, light: Floats, square: Floats) -> float:
     """Mean of squares over an area, relative to the square of the mean light; 0 in the dark."""
     lit, mean = lit_area(area, area * light, BLACK)
     return float(area @ square) / lit / mean**2 if mean > 0.0 else 0.0
+
+
+def error_warnings(error: float, quality: str, output: str) -> list[str]:
+    """A sentence where the light changes faster than the mesh can show.
+
+    Parameters
+    ----------
+    error : float
+        As `relative_error` gives it.
+    """
+    if error <= FAR_OFF[quality]:
+        return []
+    if output == "ORIGINAL":
+        what = "bake to Refined Mesh, or subdivide the mesh where shadows and lamps are"
+    else:
+        what = "choose a smaller Minimum Size, and look for something that shines right beside a surface"
+    return [f"The estimated error of {error:.0%} is far more than {quality.title()} stands for; {what}"]

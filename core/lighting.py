@@ -20,7 +20,7 @@ from .cut_edges import CutEdges
 from .cutting import cut_faces, drawn_to_cut, values_on_outlines
 from .direct import Emitters
 from .direct_light import DirectLight
-from .error_estimate import Expected, relative_error
+from .error_estimate import Expected, error_warnings, relative_error
 from .errors import NoLightError
 from .gather import Gathered, look_again
 from .interpolation import InterpolatedRadiance, PlacesOnFaces
@@ -279,6 +279,7 @@ def result_of(
             *warnings,
             *story.warnings,
             *_solution_warnings(solution),
+            *error_warnings(error, story.settings.quality, output),
             # Light that surfaces both receive and let pass is there twice.
             *(imbalance_warnings(balance) if surfaces.shadow[surfaces.seen].all() else ()),
         ],

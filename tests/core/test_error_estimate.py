@@ -121,6 +121,17 @@ def test_there_is_no_error_in_the_dark():
     assert relative_error(nothing_expected(0.0), checks, 4, irradiance, 0.0) == 0.0
 
 
+@pytest.mark.parametrize(("output", "advice"), [("ORIGINAL", "Refined Mesh"), ("REFINED", "Minimum Size")])
+def test_light_that_a_mesh_cannot_show_is_told(output, advice):
+    floor = exact.rectangle("floor", (-2, -2, 0), (4, 0, 0), (0, 4, 0), reflectance=0.5)
+    # A pane that shines a millimetre over the middle of a floor of two triangles.
+    pane = exact.rectangle("pane", (-0.5, -0.5, 1e-3), (0, 1, 0), (1, 0, 0), emission=10.0)
+    settings = BakeSettings(quality="DRAFT", output=output, minimum_size=1.0, keep_transport=False)
+    report = bake(Scene((floor, pane), np.zeros(3)), settings).report
+    assert report["estimated_error"] > 0.5
+    assert any("estimated error" in warning and advice in warning for warning in report["warnings"])
+
+
 def test_faces_that_share_no_vertex_with_others_are_split_at_the_border_of_a_shadow():
     vertices, triangles = exact.icosphere(1)
     flat_ball = surface_mesh("ball", 0.5 * vertices + [0.0, 0.0, 2.0], triangles)
