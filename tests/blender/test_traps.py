@@ -29,7 +29,7 @@ def output(request):
 def trapped(request, output, run_instead):
     """A bake of a box, or of two frames, that has begun and goes on when it is looked after: operator and window."""
 
-    def bake(scene, settings, progress):
+    def bake(scene, settings, progress, **options):
         result = position_bake(scene, settings, progress)
         # Nothing moves from frame to frame, or refined meshes could not carry both.
         result.report["relit"] = True
