@@ -37,7 +37,7 @@ class HeldLight:
         self.gate = threading.Event()
         self.bakes = 0
 
-    def __call__(self, scene, settings, progress):
+    def __call__(self, scene, settings, progress, **options):
         from importlib import import_module
 
         core = import_module(f"{MODULE}.core.bake")
@@ -45,7 +45,7 @@ class HeldLight:
         self.bakes += 1
         while not self.gate.wait(0.02):
             progress(messages.Progress("Held", 0.0))
-        return core.bake(scene, settings, progress)
+        return core.bake(scene, settings, progress, **options)
 
     def let_go(self):
         self.gate.set()
