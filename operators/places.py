@@ -11,7 +11,7 @@ import numpy as np
 from .changes import link
 from .journal import Journal
 from .likeness import take_animation, take_constraints
-from .record import is_output
+from .record import is_output, source_of
 
 _PARENTING = ("parent", "parent_type", "parent_bone", "parent_vertices")
 _CHANNELS = (
@@ -129,9 +129,38 @@ def stand_in_place(source: bpy.types.Object, output: bpy.types.Object) -> None:
         source.matrix_world = output.matrix_world @ source.matrix_world
         return
     values = _transform(output)
-    if is_bent_by_parent(source) and output.parent == source.parent:
+    values["parent"] = _original_parent(source, output)
+    if is_bent_by_parent(source) and values["parent"] == source.parent:
         values["parent_type"] = source.parent_type
     _set_transform(source, values)
+
+
+def _original_parent(source: bpy.types.Object, output: bpy.types.Object) -> bpy.types.Object | None:
+    """Return the parent of a refined object as `source` can have it: an original, unless that hangs on `source`."""
+    if output.parent is None:
+        return None
+    parent = source_of(output.parent)
+    return output.parent if source in {parent, *_ancestors(parent)} else parent
+
+
+def _ancestors(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    while obj.parent is not None:
+        obj = obj.parent
+        yield obj
+
+
+def hang_together(outputs: Outputs, journal: Journal) -> None:
+    """Have refined objects hang on that of their original's parent, so that what is seen moves as it did."""
+    for source, of_source in outputs.items():
+        for output in of_source:
+            parent = outputs.get(output.parent, ())
+            if output.parent_type != "OBJECT" or len(parent) != 1 or not shows_place(parent[0]):
+                continue
+            if output in {parent[0], *_ancestors(parent[0])} or source.library is not None:
+                continue
+            before = _transform(output)
+            journal.on_failure(_set_transform, output, before)
+            _set_transform(output, before | {"parent": parent[0]})
 
 
 def _take_what_moves(source: bpy.types.Object, output: bpy.types.Object, journal: Journal) -> bool:
@@ -202,9 +231,15 @@ def take_out(source: bpy.types.Object, journal: Journal) -> None:
 def _was_moved(output: bpy.types.Object, source: bpy.types.Object) -> bool:
     if source.library is not None or not shows_place(output):
         return False
-    if output.parent != source.parent or not same_place(output.matrix_parent_inverse, source.matrix_parent_inverse):
+    if _parent_meant(output) != _parent_meant(source):
+        return True
+    if not same_place(output.matrix_parent_inverse, source.matrix_parent_inverse):
         return True
     return not same_place(np.array(output.radiosity.place).reshape(4, 4), output.matrix_basis)
+
+
+def _parent_meant(obj: bpy.types.Object) -> bpy.types.Object | None:
+    return None if obj.parent is None else source_of(obj.parent)
 
 
 def is_animated(obj: bpy.types.Object) -> bool:

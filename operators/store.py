@@ -16,7 +16,7 @@ from .extraction import Extraction
 from .in_place import check_names, keeps_names, store_in_place
 from .journal import Journal
 from .local_mesh import fingerprint
-from .places import same_place
+from .places import hang_together, outputs_by_source, same_place
 from .refined import refined_to_keep, store_refined
 from .restore import outputs_of, restore_object
 from .targets import Target, baked_targets
@@ -79,6 +79,7 @@ def store(
                 baked_objects.append(obj)
             if beside is not None:
                 beside(baked_objects[-1], target.uid, journal)
+        hang_together(outputs_by_source(), journal)
         journal.later(display.remove_unused_display_materials)
         journal.later(displays.take_names)
     return baked_objects, warnings + displays.cautions

@@ -94,6 +94,54 @@ def test_a_refined_object_that_was_given_a_parent_keeps_it():
     assert cube.parent == parent
 
 
+@pytest.fixture
+def plate():
+    """Return a plate that hangs on a table, both originals of refined objects."""
+    table, plate = add_cube("Table", select=True), add_cube("Plate", select=True)
+    plate.parent, plate.matrix_parent_inverse = table, Matrix.Translation((0.0, 0.0, 2.0))
+    table.location.y = 4.0
+    bake_selected("REFINED")
+    return plate
+
+
+@pytest.mark.parametrize("bakes", [1, 2])
+def test_what_hung_on_an_object_moves_with_its_refined_one(plate, bakes):
+    for _ in range(bakes - 1):
+        bake_selected("REFINED")
+    refined("Table").location.x = 3.0
+    assert matrix(refined("Plate")) == pytest.approx(np.array(Matrix.Translation((3.0, 4.0, 2.0))), abs=1e-6)
+    moved = matrix(refined("Plate"))
+    bake_selected("REFINED")
+    assert matrix(refined("Plate")) == pytest.approx(moved, abs=1e-6)
+    assert colours_of(refined("Plate").data)[:, :3] == pytest.approx(corner_positions(refined("Plate")), abs=1e-5)
+    assert report()["warnings"] == []
+    bpy.ops.radiosity.restore()
+    assert plate.parent == bpy.data.objects["Table"]
+    assert matrix(plate) == pytest.approx(moved, abs=1e-6)
+
+
+def test_restore_leaves_originals_that_hang_together_as_they_were():
+    table, plate = add_cube("Table", select=True), add_cube("Plate", select=True)
+    plate.parent = table
+    before = file_state()
+    bake_selected("REFINED")
+    bake_selected("REFINED")
+    bpy.ops.radiosity.restore()
+    assert differences(before, file_state()) == []
+
+
+def test_refined_objects_may_hang_the_other_way_round(plate):
+    refined("Plate").parent = None
+    refined("Table").parent = refined("Plate")
+    places = [matrix(refined(name)) for name in ("Table", "Plate")]
+    bake_selected("REFINED")
+    for name, place in zip(("Table", "Plate"), places, strict=True):
+        assert matrix(refined(name)) == pytest.approx(place, abs=1e-6)
+    bpy.ops.radiosity.restore()
+    assert plate.parent is None
+    assert bpy.data.objects["Table"].parent == plate
+
+
 def test_an_original_that_a_script_moved_stays_where_the_script_put_it():
     cube, _ = baked_cube()
     cube.location.x = 5.0
