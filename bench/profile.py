@@ -30,7 +30,7 @@ from .scenes import SCENES
 
 RAY_LIBRARY = "ray library"
 
-CALLS_OF_LIBRARY = ("visibility", "run")
+CALLS_OF_LIBRARY = ("ray_library", "run")
 """Module and function whose own time is that of the ray library."""
 
 Function = tuple[str, int, str]

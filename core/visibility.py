@@ -8,15 +8,14 @@ import copy
 import threading
 import time
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import RayLibraryError
-from .geometry import frame
-from .kept_rays import LEAST_ROW, MOVED, Changes, KeptRays, KeptRows, Keys, RowsToKeep, keys_of
+from .kept_rays import LEAST_ROW, MOVED, KeptRays, Keys, keys_of
+from .ray_library import TracedTriangles
+from .ray_memory import RayMemory, frame_of
 from .sampling import Singles
 from .scene import Floats, Ints
 from .transmittance import Transmittance
@@ -28,37 +27,11 @@ scaled to [-0.5, 0.5], where neighbouring float32 differ by 6e-8 at most: 33 of 
 intersection is off by, and below a gap of 0.1 mm in a scene of 50 m."""
 
 
-COARSER, WITHIN = 1.5, 1.000001
-"""Times the extent of the scene up to which the coordinates of a bake before serve it, as all of them must for its rays
-to be known; and how far points may lie out of these, by rounding."""
-
 FAINTEST = np.float32(1e-4)
 """Share of the light below which what comes through many sheets counts as nothing."""
 
 MOST_SHEETS = 256
 """Surfaces that let some of the light through, which a ray goes on behind at most."""
-
-
-@cache
-def ray_library_problem() -> str | None:
-    """Return why the ray library cannot be used, as a sentence, or None if it can; asked at every redraw."""
-    try:
-        _library()
-    except RayLibraryError as error:
-        return str(error)
-    return None
-
-
-@cache
-def _library() -> Any:
-    try:
-        from embreex import mesh_construction, rtcore_scene
-    except Exception as error:  # a wheel for another system may fail in any way while it is loaded
-        raise RayLibraryError(
-            f"The ray library embreex cannot be loaded ({error}); install the Radiosity Bake package made for this "
-            "system and Blender version"
-        ) from error
-    return mesh_construction, rtcore_scene
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,139 +74,12 @@ class Hits:
         return np.stack([self.u, self.v], axis=1)
 
 
-class _Triangles:
-    """Some of the triangles as the ray library has them."""
-
-    def __init__(self, points: NDArray[np.float32], triangles: Ints, chosen: NDArray[np.bool_]) -> None:
-        mesh_construction, rtcore_scene = _library()
-        self._chosen = None if chosen.all() else np.flatnonzero(chosen).astype(np.int32)
-        # The ray library takes no empty mesh; a triangle without area is never met.
-        kept = triangles[chosen] if chosen.any() else np.zeros((1, 3))
-        self._scene = rtcore_scene.EmbreeScene()
-        mesh_construction.TriangleMesh(self._scene, points, kept.astype(np.int32))
-        # Embree builds its tree at the first ray; do it here, on one thread.
-        self._scene.run(np.zeros((1, 3), np.float32), np.array([[0, 0, 1]], np.float32), query="OCCLUDED")
-
-    def run(self, origins: NDArray[np.float32], directions: NDArray[np.float32], **options: Any) -> Any:
-        """Trace rays, as the ray library does."""
-        return self._scene.run(origins, directions, **options)
-
-    def number(self, met: NDArray[np.int32]) -> NDArray[np.int32]:
-        """Numbers among all triangles of those that were met, -1 for none."""
-        if self._chosen is None:
-            return met
-        known: NDArray[np.int32] = np.append(self._chosen, np.int32(-1))[met]
-        return known
-
-
-class _Moved:
-    """What became of some of the triangles since an earlier bake, as the ray library has it.
-
-    Attributes
-    ----------
-    now : (triangles before + 1,) int32
-        The number of each triangle now; `MOVED` for those that are not where they were, or were not in question. The
-        last is -1, for none.
-    came, gone : _Triangles or None
-        What is where nothing was, and what is not where it was: None where there is none.
-    """
-
-    def __init__(self, before: Ints, corners_before: Singles, after: Ints, corners: Singles) -> None:
-        changes = Changes.between(corners_before, corners)
-        self.now = np.full(int(before.max(initial=-1)) + 2, MOVED, dtype=np.int32)
-        stayed = np.flatnonzero(changes.now >= 0)
-        self.now[before[stayed]] = after[changes.now[stayed]]
-        self.now[-1] = -1
-        self.are_all = len(changes.gone) == len(before)
-        self.came = self._triangles(corners[changes.came])
-        self.gone = self._triangles(corners_before[changes.gone])
-        self._number = after[changes.came].astype(np.int32)
-
-    @staticmethod
-    def _triangles(corners: Singles) -> _Triangles | None:
-        count = len(corners)
-        if count == 0:
-            return None
-        return _Triangles(corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3), np.ones(count, dtype=bool))
-
-    def number(self, met: NDArray[np.int32]) -> NDArray[np.int32]:
-        """Numbers among all triangles of those that came and were met."""
-        return self._number[met]
-
-
-class _Memory:
-    """What rays met in the bake before, if there was one, and what they meet in this one.
-
-    Parameters
-    ----------
-    before : KeptRays or None
-    most : int
-        Bytes to keep; 0 for nothing.
-    centre, extent : of the ray library's coordinates
-    points : (v, 3) float32
-        In these.
-    triangles : (t, 3) int
-    seen, shadow : (t,) bool
-        Triangles that rays meet, and those that hide things wholly.
-    with_normals : bool
-        Whether rays may go on behind a triangle, for which its normal is needed.
-    """
-
-    def __init__(
-        self,
-        before: KeptRays | None,
-        most: int,
-        centre: Floats,
-        extent: float,
-        points: Singles,
-        triangles: Ints,
-        seen: NDArray[np.bool_],
-        shadow: NDArray[np.bool_],
-        with_normals: bool,
-    ) -> None:
-        self._centre, self._extent = centre, extent
-        self._seen, self._shadow = np.flatnonzero(seen), np.flatnonzero(shadow)
-        self._seen_corners = points[triangles[self._seen]]
-        self._shadow_corners = self._seen_corners if (seen == shadow).all() else points[triangles[self._shadow]]
-        self.normals = np.zeros((len(triangles), 3), dtype=np.float32) if with_normals else None
-        self.to_keep = RowsToKeep(most) if most else None
-        self.hits: dict[int, KeptRows] = {}
-        self.clear: dict[int, KeptRows] = {}
-        if before is None or before.extent != extent or (before.centre != centre).any():
-            return
-        if with_normals and before.normals is None:
-            return
-        self.of_seen = _Moved(before.seen, before.seen_corners, self._seen, self._seen_corners)
-        self.of_shadow = _Moved(before.shadow, before.shadow_corners, self._shadow, self._shadow_corners)
-        self.hits = {} if self.of_seen.are_all else before.hits
-        self.clear = {} if self.of_shadow.are_all else before.clear
-        if self.normals is not None and before.normals is not None:
-            stayed = np.flatnonzero(self.of_seen.now[:-1] >= 0)
-            self.normals[self.of_seen.now[stayed]] = before.normals[stayed]
-
-    def kept(self) -> KeptRays | None:
-        """What there is to keep; None where it would be too much."""
-        if self.to_keep is None or self.to_keep.are_too_many:
-            return None
-        return KeptRays(
-            self._centre,
-            self._extent,
-            self._seen,
-            self._seen_corners,
-            self._shadow,
-            self._shadow_corners,
-            self.normals,
-            self.to_keep.taken("hits"),
-            self.to_keep.taken("clear"),
-        )
-
-
 @dataclass(frozen=True, eq=False)
 class _Blockers:
     """What hides things: triangles that do so wholly, and those that let some of the light through, if any do."""
 
-    opaque: _Triangles
-    sheets: _Triangles | None
+    opaque: TracedTriangles
+    sheets: TracedTriangles | None
 
 
 class RayScene:
@@ -282,33 +128,33 @@ class RayScene:
         most_kept: int = 0,
     ) -> None:
         self.workers = Workers(threads)
-        self._centre, extent = _frame(points[triangles.ravel()], before)
+        self._centre, extent = frame_of(points[triangles.ravel()], before)
         self.scale = 1.0 / extent if extent > 0.0 else 1.0
         self.rays = self.known = 0
         self.seconds = 0.0
         self._counting = threading.Lock()
         chosen = [np.ones(len(triangles), dtype=bool) if mask is None else mask for mask in (seen, shadow)]
         self.transmittance = transmittance
-        self._of_seen = _Triangles(self.local(points), triangles, chosen[0])
+        self._of_seen = TracedTriangles(self.local(points), triangles, chosen[0])
 
         def blocking(mask: NDArray[np.bool_]) -> _Blockers:
             through = mask & (transmittance.some if transmittance is not None else False)
             wholly = mask & ~through
             same = (wholly == chosen[0]).all()
             return _Blockers(
-                self._of_seen if same else _Triangles(self.local(points), triangles, wholly),
-                _Triangles(self.local(points), triangles, through) if through.any() else None,
+                self._of_seen if same else TracedTriangles(self.local(points), triangles, wholly),
+                TracedTriangles(self.local(points), triangles, through) if through.any() else None,
             )
 
         self._of_shadow = blocking(chosen[1])
         self._of_sight = self._of_shadow if (chosen[0] == chosen[1]).all() else blocking(chosen[0])
         self._whole: RayScene | None = None
         self._of_blockers = {which: blocking(mask) for which, mask in (blockers or {}).items()}
-        self._memory: _Memory | None = None
+        self._memory: RayMemory | None = None
         self._throws_shadows = True
         if most_kept or before is not None:
             some = transmittance.some if transmittance is not None else np.zeros(len(triangles), dtype=bool)
-            self._memory = _Memory(
+            self._memory = RayMemory(
                 before,
                 most_kept,
                 self._centre,
@@ -366,7 +212,7 @@ class RayScene:
 
     def _run(
         self,
-        triangles: _Triangles,
+        triangles: TracedTriangles,
         origins: NDArray[np.float32],
         directions: NDArray[np.float32],
         known: bool = False,
@@ -433,7 +279,7 @@ class RayScene:
         return hits, normals
 
     def _known_hits(
-        self, memory: _Memory, origins: Singles, directions: Singles, keys: Keys, each: int
+        self, memory: RayMemory, origins: Singles, directions: Singles, keys: Keys, each: int
     ) -> tuple[Hits, Singles]:
         """What rays meet, those of known rows by what they met before, and normals there where they are needed."""
         rows = memory.hits[each]
@@ -529,7 +375,7 @@ class RayScene:
         return self._through(self._of_shadow.sheets, starts, toward.reshape(-1, 3), clear.ravel()).reshape(clear.shape)
 
     def _clear(
-        self, starts: Singles, toward: Singles, triangles: _Triangles | None = None, known: bool = False
+        self, starts: Singles, toward: Singles, triangles: TracedTriangles | None = None, known: bool = False
     ) -> NDArray[np.bool_]:
         """Whether none of some triangles, or of all that are opaque, hides the ends of rays (n,)."""
         # The ray library counts in lengths of the direction.
@@ -560,7 +406,7 @@ class RayScene:
         return clear
 
     def _known_clear(
-        self, memory: _Memory, starts: Singles, toward: Singles, keys: Keys, each: int
+        self, memory: RayMemory, starts: Singles, toward: Singles, keys: Keys, each: int
     ) -> NDArray[np.bool_]:
         """Whether rays are clear, those of known rows by whether they were before."""
         rows = memory.clear[each]
@@ -581,7 +427,7 @@ class RayScene:
         return clear
 
     def _through(
-        self, sheets: _Triangles, origins: Singles, directions: Singles, clear: NDArray[np.bool_]
+        self, sheets: TracedTriangles, origins: Singles, directions: Singles, clear: NDArray[np.bool_]
     ) -> NDArray[np.float32]:
         """The share of the light that comes through sheets along those of the rays (n,) that are else clear."""
         assert self.transmittance is not None
@@ -605,15 +451,6 @@ class RayScene:
             gone = np.minimum(gone[on] + answer["tfar"][on], np.float32(1.0))
             rows, way = rows[on], way[on]
         return result
-
-
-def _frame(points: Floats, before: KeptRays | None) -> tuple[Floats, float]:
-    """Centre and extent of the ray library's coordinates: those of a bake before, while all points are in them."""
-    centre, extent = frame(points)
-    if before is None or not extent <= before.extent <= COARSER * extent:
-        return centre, extent
-    within = (np.abs(points - before.centre) <= 0.5 * WITHIN * before.extent).all()
-    return (before.centre, before.extent) if within else (centre, extent)
 
 
 def _hits_of(answer: Any, triangle: NDArray[np.int32], directions: Singles) -> Hits:

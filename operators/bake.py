@@ -172,9 +172,9 @@ def _core_bake():
 
 def ray_library_problem() -> str | None:
     """Return why no rays can be traced on this computer, or None."""
-    from ..core import visibility
+    from ..core import ray_library
 
-    return visibility.ray_library_problem()
+    return ray_library.ray_library_problem()
 
 
 def reason_not_to_bake(context: bpy.types.Context) -> str | None:

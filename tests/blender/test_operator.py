@@ -54,7 +54,7 @@ def test_the_button_is_grey_in_edit_mode():
 def test_the_button_is_grey_without_the_ray_library_and_says_why(monkeypatch):
     add_cube(select=True)
     why = "The ray library embreex cannot be loaded"
-    monkeypatch.setattr("radiosity_bake.core.visibility.ray_library_problem", lambda: why)
+    monkeypatch.setattr("radiosity_bake.core.ray_library.ray_library_problem", lambda: why)
     assert reason_not_to_bake(bpy.context) == why
     with pytest.raises(RuntimeError, match=why):
         bpy.ops.radiosity.bake()

@@ -37,7 +37,7 @@ def test_core_imports_the_standard_library_numpy_and_the_ray_library_only():
 
 
 def test_one_module_alone_imports_the_ray_library():
-    assert [path.name for path in CORE if "embreex" in imported(path)] == ["visibility.py"]
+    assert [path.name for path in CORE if "embreex" in imported(path)] == ["ray_library.py"]
 
 
 def test_core_imports_nothing_of_the_package_above_it():
@@ -66,7 +66,7 @@ def test_a_bake_runs_where_blender_cannot_be_imported():
 
 def test_without_the_ray_library_a_bake_says_what_to_install():
     code = "sys.modules['embreex'] = None; load_package(); " + ROOM
-    code += "from radiosity_bake.core.visibility import ray_library_problem; print(ray_library_problem()); "
+    code += "from radiosity_bake.core.ray_library import ray_library_problem; print(ray_library_problem()); "
     code += "bake(furnace()[0], BakeSettings(quality='DRAFT'))"
     done = run(code)
     assert "embreex cannot be loaded" in done.stdout and "install" in done.stdout
@@ -74,7 +74,7 @@ def test_without_the_ray_library_a_bake_says_what_to_install():
 
 
 def test_there_is_no_problem_with_the_ray_library_here():
-    from radiosity_bake.core.visibility import ray_library_problem
+    from radiosity_bake.core.ray_library import ray_library_problem
 
     assert ray_library_problem() is None
 

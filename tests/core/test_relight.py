@@ -207,7 +207,7 @@ def test_no_ray_is_traced(kept_bakes, monkeypatch):
     def refuse(*_):
         raise AssertionError("rays are wanted")
 
-    monkeypatch.setattr("radiosity_bake.core.visibility._library", refuse)
+    monkeypatch.setattr("radiosity_bake.core.ray_library.library", refuse)
     report = relight(kept, recoloured(room_with_two_lamps(), emission=2.0)).report
     assert report["relit"]
     assert report["rays"] == 0
